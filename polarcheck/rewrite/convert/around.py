@@ -3,25 +3,23 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Container
 from fnmatch import fnmatchcase
 
-import msgspec
 import numpy as np
 
 from polarcheck.checking.settings import Settings
 from polarcheck.columns.filling import fill_down
-from polarcheck.foundation.arrays import Rows
+from polarcheck.foundation.arrays import Rows, mask_at
 from polarcheck.foundation.states import MOVES
 from polarcheck.program.machines.machine import Machine
 from polarcheck.rewrite.convert.axis_words import Translated
 from polarcheck.rewrite.convert.block_texts import BlockTexts
 from polarcheck.rewrite.convert.heads import Heads, writes_numbers
+from polarcheck.rewrite.convert.new_program import NewProgram
 from polarcheck.rewrite.convert.translating import Translation
 from polarcheck.rewrite.writing.new_blocks import NewBlock, decision_comment
 from polarcheck.rewrite.writing.original import Original
-from polarcheck.rewrite.writing.outcome import Decision, Refusal, RefusedError, refused_at
-from polarcheck.rules.editing import Replace
+from polarcheck.rewrite.writing.outcome import Refusal, RefusedError, refused_at
 
 _WORD = re.compile(r"[$A-Z_][A-Z0-9_$]*+(?:\[[^\[\]]{0,80}+\])?=?")
 _INDEX = re.compile(r"\[[^\[\]]*+\]")
@@ -45,44 +43,23 @@ def is_without_effect(content: str, machine: Machine) -> bool:
     return False
 
 
-class Around(msgspec.Struct, frozen=True):
+def write_around(original: Original, target: Settings, translation: Translation, new: NewProgram) -> None:
     """
-    The blocks outside of polar sections.
+    Write the blocks outside of polar sections as the other machine reads them.
 
-    blocks: index in text.blocks -> what stands in its place; a block that is not in it stays as it is.
-    before, behind: new blocks before and behind a block that stays.
-    edits: of heads and ends of programs.
-    decisions: what is to be decided.
-    decided: lines of the original that lost a word, or whose M code stands in another list there.
+    new: has the sections, and takes these blocks. Raises RefusedError with all that cannot be written.
     """
-
-    blocks: dict[int, list[NewBlock]]
-    before: dict[int, list[NewBlock]]
-    behind: dict[int, list[NewBlock]]
-    edits: list[Replace]
-    decisions: list[Decision]
-    decided: set[int]
-
-
-def around(original: Original, target: Settings, translation: Translation, taken: Container[int]) -> Around:
-    """
-    Return the blocks outside of polar sections as the other machine reads them.
-
-    taken: blocks that are written elsewhere. Raises RefusedError with all that cannot be written.
-    """
-    return _Writer(original, target, translation, taken).result()
+    _Writer(original, target, translation, new).write()
 
 
 class _Writer:
-    def __init__(self, original: Original, target: Settings, translation: Translation, taken: Container[int]) -> None:
-        self.trace, self.target, self.translation = original.trace, target.machine, translation
+    def __init__(self, original: Original, target: Settings, translation: Translation, new: NewProgram) -> None:
+        self.trace, self.target, self.translation, self.new = original.trace, target.machine, translation, new
         self.source = self.trace.machine
         self.texts = BlockTexts(self.trace)
-        self.blocks: dict[int, list[NewBlock]] = {}
-        self.decisions: list[Decision] = []
         self.refusals: list[Refusal] = []
         count = len(self.trace.text.blocks)
-        self._taken = np.fromiter((block in taken for block in range(count)), bool, count)
+        self._taken = mask_at(count, list(new.taken))
         self._order, self._begins = _grouped(self.trace.run.block, count)
         self._from_section = self._motion_from_section()
         self._resigns = (self.source.control.line_comments, self.source.control.parentheses_are_comments) != (
@@ -92,12 +69,10 @@ class _Writer:
         self._reported = False
         self._contours: dict[tuple[float, float], tuple[int, int]] = {}
         self._has_lost_motion = False
-        self.decided: set[int] = set()
 
-    def result(self) -> Around:
-        for block in range(len(self.trace.text.blocks)):
-            if self._taken[block]:
-                continue
+    def write(self) -> None:
+        new = self.new
+        for block in np.flatnonzero(~self._taken).tolist():
             try:
                 self._block(block)
             except RefusedError as error:
@@ -106,10 +81,9 @@ class _Writer:
         if self.refusals:
             raise RefusedError(self.refusals)
         heads = Heads(self.trace, self.target, self.texts)
-        decisions = sorted((*self.decisions, *heads.decisions), key=lambda decision: decision.line)
-        before, after = heads.before(self.translation.measures), heads.behind()
-        decided = self.decided | self.translation.left_out
-        return Around(self.blocks, before, after, heads.edits, decisions, decided)
+        new.before, new.behind, new.edits = heads.before(self.translation.measures), heads.behind(), heads.edits
+        new.decisions += heads.decisions
+        new.decided |= self.translation.left_out
 
     def _rows(self, block: int) -> Rows:
         return self._order[self._begins[block] : self._begins[block + 1]]
@@ -121,28 +95,27 @@ class _Writer:
 
     def _decide_contours(self) -> None:
         """Leave the contour from N of P to N of Q to be decided with its turning cycle, without which it is a cut."""
-        blocks = self.trace.blocks
-        for row in np.flatnonzero(blocks.listed("repetitive_cycle")).tolist():
+        blocks, decided = self.trace.blocks, self.new.decided
+        rows = np.flatnonzero(blocks.listed("repetitive_cycle") & ~self._taken[self.trace.run.block])
+        for row in rows.tolist():
             line = int(blocks.line_in_file[row])
             cycle = int(self.trace.run.block[row])
-            first, last = (self.texts.block_numbered(float(blocks.word(word)[row]), cycle) for word in "PQ")
+            key = float(blocks.word("P")[row]), float(blocks.word("Q")[row])
+            first, last = (self.texts.block_numbered(number, cycle) for number in key)
             if first is None or last is None:
-                first, last = self._contours.get((float(blocks.word("P")[row]), float(blocks.word("Q")[row])), (-1, -1))
-                if first >= 0 and line not in self.decided:
+                first, last = self._contours.get(key, (-1, -1))
+                if first >= 0 and line not in decided:
                     # A finishing cycle along a contour that is left to be decided.
                     content = self.texts.content(cycle)
-                    self._decide(line, f"{content}: its contour is left to be decided")
-                    self.blocks[cycle] = [NewBlock((), decision_comment(f"{content}: ITS CONTOUR"))]
+                    self.new.decide(line, f"{content}: its contour is left to be decided")
+                    self.new.blocks[cycle] = [NewBlock((), decision_comment(f"{content}: ITS CONTOUR"))]
                 continue
-            if line not in self.decided:
+            if line not in decided:
                 continue
-            self._contours[float(blocks.word("P")[row]), float(blocks.word("Q")[row])] = first, last
+            self._contours[key] = first, last
             for block in range(first, last + 1):
-                content = self.texts.content(block)
-                if content and not self._taken[block] and self.texts.line(block) not in self.decided:
-                    text = f"{content}: it is the contour of the cycle in line {line}"
-                    self._decide(self.texts.line(block), text)
-                    self.blocks[block] = [NewBlock((), decision_comment(text))]
+                if self.texts.content(block) and not self._taken[block] and self.texts.line(block) not in decided:
+                    self._leave(block, f"it is the contour of the cycle in line {line}")
 
     # ---- one block ----
 
@@ -155,7 +128,7 @@ class _Writer:
         content = self.texts.content(block)
         self._reported = False
         if self.texts.has_program_number(block):
-            if self.translation.words_of(row):
+            if self.translation.measures.words_of(row):
                 raise refused_at(self.trace, row, "words stand beside O: put them into a block of their own")
             self._program(block)
             return
@@ -170,11 +143,11 @@ class _Writer:
     def _program(self, block: int) -> None:
         """A block with a program number, which stays or is written by Heads."""
         if self._resigns and self.texts.has_comment(block) and writes_numbers(self.target):
-            self.blocks[block] = [NewBlock()]
+            self.new.blocks[block] = [NewBlock()]
 
     def _same_each_time(self, rows: Rows) -> Translated:
         """The words of a block, which are the same each time that it runs."""
-        indices = self.translation.words_of(int(rows[0]))
+        indices = self.translation.measures.words_of(int(rows[0]))
         for in_steps in (False, True):
             first = self.translation.words(int(rows[0]), indices, in_steps)
             if all(self._is_same(first, int(row), in_steps) for row in rows[1:]):
@@ -182,7 +155,7 @@ class _Writer:
         raise refused_at(self.trace, int(rows[0]), "it runs several times, and would be another block each time")
 
     def _is_same(self, first: Translated, row: int, in_steps: bool) -> bool:
-        second = self.translation.words(row, self.translation.words_of(row), in_steps)
+        second = self.translation.words(row, self.translation.measures.words_of(row), in_steps)
         return (second.words, second.behind, second.whole) == (first.words, first.behind, first.whole)
 
     def _call(self, row: int, content: str) -> Translated | None:
@@ -212,64 +185,60 @@ class _Writer:
         result.words.insert(len(result.behind), code)
         result.changed, self._has_lost_motion = True, False
 
+    def _leave(self, block: int, reason: str) -> None:
+        """Leave a block to be decided, of which nothing is in the new program but a comment."""
+        self._write(block, Translated(whole=reason))
+
     def _write(self, block: int, result: Translated) -> None:
-        line = self.texts.line(block)
+        comment = self.new.comment(self.texts.line(block), self.texts.content(block), result)
         if result.whole:
-            content = self.texts.content(block)
-            self._decide(line, f"{content}: {result.whole}")
-            self.blocks[block] = [NewBlock((), decision_comment(f"{content}: {result.whole}"))]
+            self.new.blocks[block] = [NewBlock((), comment)]
             return
-        for text in result.decisions:
-            self._decide(line, text)
-        self.decisions += [Decision(line, text) for text in result.remarks]
-        comment = result.comment
         if not (result.changed or comment or (self._resigns and self.texts.has_comment(block))):
             return
-        new = [NewBlock(tuple(result.words), decision_comment(comment) if comment else "")]
+        new = [NewBlock(tuple(result.words), comment)]
         if result.behind and not self._says_absolute(block):
             new.append(NewBlock(tuple(result.behind)))
         stays = new[0].words or comment or self.texts.has_comment(block)
-        self.blocks[block] = new if stays else new[1:]
+        self.new.blocks[block] = new if stays else new[1:]
 
     def _says_absolute(self, block: int) -> bool:
         """The next block begins with G90 itself."""
         following = self._rows(block + 1) if block + 1 < len(self._begins) - 1 else self._order[:0]
         return bool(len(following) and self.trace.blocks.listed("absolute")[following[0]])
 
-    def _decide(self, line: int, text: str) -> None:
-        self.decisions.append(Decision(line, text))
-        self.decided.add(line)
-
     # ---- blocks that are not executed ----
 
     def _without_row(self, block: int) -> None:
-        content = self.texts.content(block)
-        line, is_never_run = self.texts.line(block), False
+        content, line = self.texts.content(block), self.texts.line(block)
         if self.texts.is_mark(block):
             return
         if not content:
             if self._resigns and self.texts.has_comment(block):
-                self.blocks[block] = [NewBlock()]
+                self.new.blocks[block] = [NewBlock()]
             return
-        if self.texts.is_statement(block):
-            if self.source.macro.language == self.target.macro.language:
-                return
-            if not is_without_effect(content, self.source):
-                text = f"{content} is a statement of a language that {self.target.title} does not have"
-                self.refusals.append(Refusal(line, text))
-                return
-            reason = f"a statement that {self.target.title} does not have"
-        elif self.texts.is_text(block):
+        if not self.texts.is_statement(block):
+            if not self.texts.is_text(block):
+                self._never_run(block, line, content)
             return
+        if self.source.macro.language == self.target.macro.language:
+            return
+        if not is_without_effect(content, self.source):
+            text = f"{content} is a statement of a language that {self.target.title} does not have"
+            self.refusals.append(Refusal(line, text))
+            return
+        self._leave(block, f"a statement that {self.target.title} does not have")
+        self._reported = False
+
+    def _never_run(self, block: int, line: int, content: str) -> None:
+        """A block that is never run: of several one behind the other the first is a thing to decide."""
+        reason = "it is never run, so that what is in force there is not known"
+        if self._reported:
+            self.new.decided.add(line)
+            self.new.blocks[block] = [NewBlock((), decision_comment(f"{content}: {reason}"))]
         else:
-            reason = "it is never run, so that what is in force there is not known"
-            is_never_run = True
-        if is_never_run and self._reported:
-            self.decided.add(line)
-        else:
-            self._decide(line, f"{content}: {reason}")
-        self._reported = is_never_run
-        self.blocks[block] = [NewBlock((), decision_comment(f"{content}: {reason}"))]
+            self._leave(block, reason)
+        self._reported = True
 
 
 def _grouped(block: Rows, count: int) -> tuple[Rows, Rows]:

@@ -11,10 +11,11 @@ from msgspec.structs import replace
 from polarcheck.checking.settings import Settings
 from polarcheck.foundation.states import Units
 from polarcheck.program.machines.job import Job
-from polarcheck.rewrite.convert.around import around
-from polarcheck.rewrite.convert.channel_marks import channel_marks
-from polarcheck.rewrite.convert.converted_sections import sections
+from polarcheck.rewrite.convert.around import write_around
+from polarcheck.rewrite.convert.channel_marks import write_channel_marks
+from polarcheck.rewrite.convert.converted_sections import write_sections
 from polarcheck.rewrite.convert.doubtful_values import SENSE_OF_Z, doubts, note_on_units, said, unaccepted
+from polarcheck.rewrite.convert.new_program import NewProgram
 from polarcheck.rewrite.convert.translating import Translation
 from polarcheck.rewrite.writing.new_blocks import (
     NewBlock,
@@ -49,14 +50,14 @@ def converted(original: Original, target: Settings, accepted: Container[str] = (
     trace = original.trace
     translation = Translation(original, target)
     style = style_of(trace)
-    inside = sections(original, target.machine, style, translation)
-    outside = around(original, target, translation, inside.taken)
-    marks = channel_marks(original, target, {**outside.blocks, **inside.blocks})
-    blocks = {**outside.blocks, **inside.blocks, **marks.blocks}
-    edits = edits_of(original, blocks, style, target.machine)
-    edits += [edit_before(original, block, new, style, target.machine) for block, new in outside.before.items()]
-    edits += [edit_behind(original, block, new, style, target.machine) for block, new in outside.behind.items()]
-    edits += [*outside.edits, *edits_of_signs(original, target.machine)]
+    new = NewProgram()
+    write_sections(original, target.machine, style, translation, new)
+    write_around(original, target, translation, new)
+    notes_on_marks = write_channel_marks(original, target, new)
+    edits = edits_of(original, new.blocks, style, target.machine)
+    edits += [edit_before(original, block, blocks, style, target.machine) for block, blocks in new.before.items()]
+    edits += [edit_behind(original, block, blocks, style, target.machine) for block, blocks in new.behind.items()]
+    edits += [*new.edits, *edits_of_signs(original, target.machine)]
     in_doubt = list(doubts(translation.measures.basis, trace, original.settings, target))
     if reasons := unaccepted(in_doubt, accepted):
         raise RefusedError(reasons)
@@ -66,24 +67,21 @@ def converted(original: Original, target: Settings, accepted: Container[str] = (
         # Somebody has said that Z as it stands is right there.
         control = replace(target.machine.control, z_into_part=sense)
         settings = replace(settings, machine=replace(target.machine, control=control))
-    decided = outside.decided | inside.decided
     # Speeds are compared word by word: S of before stays in force beside P of M133.
-    is_other_spindle = bool(decided) or bool(translation.roles.of_live_tool.any())
+    is_other_spindle = bool(new.decided) or bool(translation.roles.of_live_tool.any())
     states = {"speed", *(("spindle", "live_tool") if is_other_spindle else ())}
     result = read_back(
         original,
         data,
         settings,
         origin,
-        decided,
-        rapid_as_line=inside.rapid_as_line,
+        new.decided,
+        rapid_as_line=new.rapid_as_line,
         other_states=states,
         added_speeds=translation.added_speeds,
     )
     _require_equal(result, original, target)
-    decisions = sorted(
-        dict.fromkeys((*outside.decisions, *inside.decisions, *marks.decisions)), key=lambda decision: decision.line
-    )
+    decisions = sorted(dict.fromkeys(new.decisions), key=lambda decision: decision.line)
     # What an M code is that is to be decided says whether the live tool runs.
     is_explained = any(_M_CODE.match(decision.text) for decision in decisions)
     open_orders = [
@@ -99,8 +97,8 @@ def converted(original: Original, target: Settings, accepted: Container[str] = (
         Figure("largest distance of the tool center paths", result.deviation, "mm"),
     ]
     notes = [f"line {doubt.line}: {said(doubt)}: accepted" for doubt in in_doubt]
-    notes += [*note_on_units(trace, original.settings, target), *marks.notes, *_notes(translation.notes)]
-    notes += [*inside.notes, *result.notes]
+    notes += [*note_on_units(trace, original.settings, target), *notes_on_marks, *_notes(translation.notes)]
+    notes += [*new.notes, *result.notes]
     notes += [
         f"line {line}: O{number} is not in the file: convert it, too"
         for number, line in translation.calls.missing.items()

@@ -9,7 +9,6 @@ import numpy as np
 from polarcheck.columns.filling import fill_down
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Rows, column_at, stretch
-from polarcheck.program.machines.code_tables import code_numbers
 from polarcheck.program.machines.machine import Machine
 from polarcheck.rewrite.convert.g_meanings import GMeanings
 from polarcheck.rewrite.convert.measures import Measures
@@ -64,7 +63,7 @@ class CycleWords:
         word = int(self._cycle_word[row])
         if word < 0 or not bool(self.trace.modal.in_cycle[row]):
             return ""
-        meaning = self._g.meaning(int(code_numbers(self.trace.run.words.value[word : word + 1])[0]), has_words=True)
+        meaning = self._g.meaning(self.measures.code_of(word), has_words=True)
         return f"{self.measures.written(word)}: {meaning.reason}" if meaning.reason else ""
 
     @cached_property

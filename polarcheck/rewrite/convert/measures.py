@@ -9,8 +9,10 @@ import numpy as np
 
 from polarcheck.columns.path.lengths import RADIUS_FACTOR
 from polarcheck.columns.trace import Trace
+from polarcheck.foundation.arrays import stretch
 from polarcheck.foundation.states import Distance, Units
 from polarcheck.program.machines.axis_table import INCREMENTS
+from polarcheck.program.machines.code_tables import code_numbers
 from polarcheck.program.machines.machine import Machine
 from polarcheck.rewrite.convert.doubtful_values import Basis
 from polarcheck.rewrite.convert.number_text import number_of, rescaled, rounded
@@ -95,6 +97,22 @@ class Measures:
         return fraction(float(self.trace.lengths.least_increment[row]))
 
     # ---- what a word is ----
+
+    def words_of(self, row: int) -> list[int]:
+        """The executed words of a row without N, O and block skip, in the order in which they are written."""
+        low, high = stretch(self.trace.run.row, row, row + 1)
+        words = self.trace.run.words
+        written = zip(words.start[low:high].tolist(), range(low, high), words.address[low:high].tolist(), strict=True)
+        return [index for _, index, address in sorted(written) if address not in b"NO/"]
+
+    def letter_of(self, index: int) -> str:
+        """The letter of an executed word; empty for a name."""
+        number = int(self.trace.run.words.address[index])
+        return chr(number) if number < 128 else ""
+
+    def code_of(self, index: int) -> int:
+        """A G or M word as a whole number (codes.code)."""
+        return int(code_numbers(self.trace.run.words.value[index : index + 1])[0])
 
     def axis_word(self, row: int, index: int) -> AxisWord | None:
         """A word as one of an axis; None where it is none that both machines have."""

@@ -15,7 +15,6 @@ from polarcheck.program.machines.machine import Machine
 from polarcheck.rewrite.convert.doubtful_values import Basis
 from polarcheck.rewrite.writing.original import Original
 from polarcheck.rewrite.writing.outcome import Refusal, refusal_at
-from polarcheck.rewrite.writing.pen import Pen
 
 
 class SectionFeeds:
@@ -56,11 +55,6 @@ class SectionFeeds:
             return 1.0
         rise = abs(float(path.z[row]) - float(path.z_before[row]))
         return length / math.hypot(length, rise) if rise == rise else 1.0
-
-    def word_in_force(self, row: int, pen: Pen) -> str:
-        """The F word of what is in force in a row; empty without one."""
-        feed = float(self.trace.feedrate.feed_number[row])
-        return "" if math.isnan(feed) else "F" + pen.numbers.feed(feed)
 
 
 def refusals(original: Original, is_same: bool) -> list[Refusal]:

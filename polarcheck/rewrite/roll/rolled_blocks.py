@@ -43,7 +43,7 @@ def restored(trace: Trace, following: Following, last: int, pen: Pen, *, is_line
         words.append(in_case(pen, pen.numbers.code("G1")))
     if not writes_x:
         count = pen.numbers.increments(float(trace.path.x[last]) / x_factor(trace, last))
-        words.append(in_case(pen, pen.word("X", count)))
+        words.append(in_case(pen, pen.numbers.word("X", count)))
     is_time = mode == FeedMode.INVERSE_TIME
     if following.takes_over(last, following.at_feed, following.feed) or (is_time and not writes_x):
         feed = float(trace.feedrate.written_feed[last])

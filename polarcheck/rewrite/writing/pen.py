@@ -8,10 +8,11 @@ from collections.abc import Sequence
 from polarcheck.foundation.states import Motion
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.program.machines.machine import Machine
+from polarcheck.rewrite.writing.arc_words import ArcWords
 from polarcheck.rewrite.writing.new_blocks import NewBlock
 from polarcheck.rewrite.writing.outcome import Refusal, RefusedError
 from polarcheck.rewrite.writing.style import PLAIN, Style
-from polarcheck.rewrite.writing.written_arcs import Arc, arc_between, nearest_center, nearest_radius
+from polarcheck.rewrite.writing.written_arcs import Arc, arc_between
 from polarcheck.rewrite.writing.written_numbers import Numbers
 
 #: The code of each motion, as the functions of Pen take it.
@@ -36,6 +37,7 @@ class Pen:
     ) -> None:
         self.machine, self.style = machine, style
         self.numbers = Numbers(machine, style, inch, feed_inch)
+        self._arcs = ArcWords(machine, style, self.numbers)
         self.at = complex(math.nan, math.nan)
         self.z = math.nan
         control, polar, writing = machine.control, machine.polar, machine.writing
@@ -153,7 +155,7 @@ class Pen:
             # Its radius at the end is another one: within the tolerance of arcs it leads straight along its radius.
             return self.line(end, z, feed, codes)
         blocks: list[NewBlock] = []
-        count = self._parts(arc)
+        count = self._arcs.parts(arc)
         from_z = self.z
         for number, part in enumerate(arc.parts(count), 1):
             depth = None if z is None else z if number == count else from_z + (z - from_z) * number / count
@@ -204,20 +206,15 @@ class Pen:
         words = []
         for index, (name, count) in enumerate(zip((self.linear, self.virtual), self._rounded(end), strict=True)):
             if everything or count != self._written[index]:
-                words.append(self.word(name, count))
+                words.append(self.numbers.word(name, count))
             self._written[index] = count
         return words
 
     def _depth(self, z: float) -> list[str]:
         count = self.numbers.increments(z)
-        words = [self.word("Z", count)] if count != self._written[2] else []
+        words = [self.numbers.word("Z", count)] if count != self._written[2] else []
         self.z, self._written[2] = z, count
         return words
-
-    def word(self, address: str, count: int) -> str:
-        """A word of least increments; with = where its address is a name or ends with a digit, as C2=10."""
-        sign = "=" if len(address) > 1 and not address.endswith("=") else ""
-        return address + sign + self.numbers.of_increments(count)
 
     def _arc(
         self, arc: Arc, end: complex, z: float | None, feed: float | None, codes: Sequence[str], halvings: int
@@ -227,7 +224,7 @@ class Pen:
             # With these words it would be a full circle.
             self.at = end
             return self.line(None, z, feed, codes) if z is not None or codes else []
-        words = self._arc_words(arc, start, target)
+        words = self._arcs.written(arc, start, target)
         if words is None:
             if not halvings:
                 if abs(arc.sweep) < math.pi and arc.radius * (1 - math.cos(arc.sweep / 2)) < self.numbers.step:
@@ -242,39 +239,6 @@ class Pen:
         axes += [] if z is None else self._depth(z)
         self.at = end
         return [self._block(codes, code, [*axes, *words], feed)]
-
-    def _arc_words(self, arc: Arc, start: complex, end: complex) -> list[str] | None:
-        """I and J, or the radius; None where the arc that they make is off by more than the least increment."""
-        numbers, step = self.numbers, self.numbers.step
-        for form in self._forms(arc):
-            if form == "radius":
-                radius, deviation = nearest_radius(arc, start, end, step)
-                if deviation <= step:
-                    return [self.word(self.machine.writing.arc_radius, radius)]
-            else:
-                i, j, deviation = nearest_center(arc, start, end, step)
-                if deviation <= step:
-                    addresses = self.machine.polar.center_words[self.machine.polar.linear_address]
-                    return [a + numbers.of_increments(n) for a, n in zip(addresses, (i, j), strict=True)]
-        return None
-
-    def _forms(self, arc: Arc) -> list[str]:
-        """What may be written, the first choice first; a radius only for arcs of which it is certain."""
-        forms: list[str] = list(self.machine.writing.arcs_by)
-        preferred = {True: "center", False: "radius", None: ""}[self.style.by_center]
-        forms.sort(key=lambda form: form != preferred)
-        limit = math.pi if self.machine.arcs.takes_sweep_limit else math.pi - 0.01
-        return [form for form in forms if form == "center" or abs(arc.sweep) <= limit + 1e-9]
-
-    def _parts(self, arc: Arc) -> int:
-        """Into how many parts an arc is written."""
-        arcs, writing = self.machine.arcs, self.machine.writing
-        limit = math.radians(min(writing.arc_split, arcs.sweep_limit))
-        if "center" not in writing.arcs_by:
-            limit = min(limit, math.pi)
-        count = math.ceil(abs(arc.sweep) / limit - 1e-9)
-        is_at_limit = abs(arc.sweep) / count > math.radians(arcs.sweep_limit) - 0.01
-        return count + (is_at_limit and not arcs.takes_sweep_limit)
 
     def _start(self, arc: Arc) -> complex:
         return self.written_point if all(count is not None for count in self._written[:2]) else arc.start

@@ -55,6 +55,11 @@ class Numbers:
         decimals = style.fraction_decimals if is_fraction and style.decimals is None else style.decimals
         return self._checked(_fixed(count * self.least, self.least), decimals, style.point)
 
+    def word(self, address: str, count: int) -> str:
+        """A word of least increments; with = where its address is a name or ends with a digit, as C2=10."""
+        sign = "=" if len(address) > 1 and not address.endswith("=") else ""
+        return address + sign + self.of_increments(count)
+
     def angle(self, degrees: float) -> str:
         """An angle [deg] as it is written."""
         least = self.machine.control.least_increment
