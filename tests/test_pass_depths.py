@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-import numpy as np
+import math
+
 import pytest
 from cases import looped
 from programs import tables_of
@@ -14,15 +15,15 @@ BLOCKS = "Z{}\nG42 X{} C0 F{}\nG3 I-{}\nG1 G40 X{}\n"
 UNITS = {"G21": (1.0, "20.", "200", "10.", "60."), "G20": (25.4, "1.", "8.", ".5", "3.")}
 
 
-def off(levels: list[float], code: str) -> dict[int, float]:
+def off(levels: list[float], code: str, turning: str = "") -> dict[int, float]:
     """The passes that are off by the number of their Z, and the Z that each would have."""
     scale, across, feed, radius, away = UNITS[code]
     passes = "".join(BLOCKS.format(f"{z / scale:.5f}", across, feed, radius, away) for z in levels)
-    text = f"O1\n{code} G98 T0101\nG0 X{away} Z.2 C0\nG12.1\nG1 X{away} F{feed}\n{passes}Z.2\nG13.1\n"
+    text = f"O1\n{turning}{code} G98 T0101\nG0 X{away} Z.2 C0\nG12.1\nG1 X{away} F{feed}\n{passes}Z.2\nG13.1\n"
     tables = tables_of(text, "fanuc", f"1:radius={4 / scale:.5f}")
     depths = tables["pass_depths"]
     lines = tables["trace"].blocks.line
-    return {(int(lines[row]) - 2) // 4: float(depths.expected[row]) for row in np.flatnonzero(depths.is_off).tolist()}
+    return {(int(lines[row]) - turning.count("\n") - 2) // 4: z for row, z in depths.expected.items()}
 
 
 @looped("code", UNITS)
@@ -51,3 +52,25 @@ def off(levels: list[float], code: str) -> dict[int, float]:
 )
 def test_a_pass_that_is_out_of_step(levels: list[float], expected: dict[int, float], code: str) -> None:
     assert off(levels, code) == pytest.approx(expected, abs=0.001)
+
+
+@looped(
+    ("levels", "expected"),
+    [
+        ([-11.95, -3.9], {1: -1.95}),
+        ([-33.75, -7.5], {1: -3.75}),
+        # Z-39 behind Z-19.5 would be as much in step as Z-1.95 before Z-3.9.
+        ([-19.5, -3.9], {1: math.nan}),
+        # Two grooves: no digit is wrong.
+        ([-10, -5], {}),
+        ([-6, -2], {}),
+    ],
+)
+def test_of_two_passes_the_digits_show_which_is_out_of_step(levels: list[float], expected: dict[int, float]) -> None:
+    assert off(levels, "G21") == pytest.approx(expected, nan_ok=True)
+
+
+def test_a_pass_that_cannot_go_below_the_turning_is_in_step() -> None:
+    """Of Z-1.95 before Z-3.9, and Z-39 behind Z-19.5, the second lies far below the spigot that is turned."""
+    turning = "T0202\nG97 S900 M3\nG0 X30. Z2. G99\nG1 Z-12. F.2\nX50.\nG0 Z50.\nM5\n"
+    assert off([-19.5, -3.9], "G21", turning) == pytest.approx({1: -1.95})

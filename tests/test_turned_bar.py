@@ -204,6 +204,33 @@ def test_a_slip_against_the_metal_is_told(kind: str) -> None:
     assert report_words(next(slip for slip in slips if slip is not None)) != []
 
 
+@looped(
+    ("kind", "seed", "rule"),
+    [
+        # Either pass may be the wrong one, but for its digits and the turning.
+        ("depth ten times", 20000, "pass-depth-differs"),
+        ("depth ten times", 70004, "pass-depth-differs"),
+        ("digit too many in the depth", 20000, "pass-depth-differs"),
+        ("digit too many in the depth", 20010, "pass-depth-differs"),
+        # The wrong corner lies on the wall on which the contour begins, or on another corner.
+        ("contour C ten times", 20045, "nearly-regular-contour"),
+        ("contour C doubled", 20014, "nearly-regular-contour"),
+        ("contour C doubled", 70095, "nearly-regular-contour"),
+        ("contour C without its sign", 20003, "nearly-regular-contour"),
+        ("contour C without its sign", 20064, "nearly-regular-contour"),
+        # The pass below cuts the same way.
+        ("depth is missing", 70000, "cut-in-air"),
+        ("depth is missing", 70004, "cut-in-air"),
+        # A drill on X0 cuts a place that is known at any angle of C.
+        ("rapid traverse below the face", 70011, "rapid-through-stock"),
+    ],
+)
+def test_slips_that_one_witness_tells(kind: str, seed: int, rule: str) -> None:
+    slip = slipped(drawn(seed), kind)
+    assert slip is not None
+    assert report_words(slip) == [rule]
+
+
 def report_words(program: Program) -> list[str]:
     report = report_of(program.text(), "fanuc-30i", *program.tools, job={"stock": program.stock})
     return [one.rule for one in report.findings if one.severity != "note"]

@@ -112,11 +112,13 @@ class _Search:
         if symmetry.corners + symmetry.arcs < (_CORNERS if symmetry.is_turned else _MIRRORED_CORNERS):
             return False
         added = len(trial.point) - len(self.loop.point)
-        if written is not None and symmetry.corners_behind_start < written.corners_behind_start + max(added, 0):
+        if written is not None and symmetry.corners < written.corners_behind_start + max(added, 0):
             return False
         if added > 0 and symmetry.order <= _HALF_TURN and symmetry.corners < _MANY_CORNERS:
             return False  # a rectangle with a lead comes again after half a turn with one block more
-        before = 2 * symmetry.corners + symmetry.arcs if written is None else written.freedom
+        # Where a wrong point lies on another one, the most regular ring of the path is a part of it.
+        absent = symmetry.corners if written is None else symmetry.corners - max(added, 0) - written.corners
+        before = 2 * max(absent, 0) + (symmetry.arcs if written is None else written.freedom)
         if before - symmetry.freedom < (_GAIN if plain or added else _GAIN_IF_UNSURE):
             return False
         if plain:
@@ -128,7 +130,7 @@ class _Search:
     def _is_more_symmetric(self, symmetry: Symmetry) -> bool:
         """More turns and mirrors leave the contour as it is, and it has all of its corners."""
         written = self.written
-        if written is None or symmetry.corners_behind_start < written.corners_behind_start:
+        if written is None or symmetry.corners < written.corners_behind_start:
             return False
         return written.images < symmetry.images and written.freedom - symmetry.freedom >= _LEAST_FIXED
 

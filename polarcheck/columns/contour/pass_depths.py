@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import numpy as np
 
-from polarcheck.columns.metal.air_cuts import AirCuts
+from polarcheck.columns.metal.air_cuts import AirCuts, row_of_infeed
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, Table, cached_property
 from polarcheck.geometry.tolerances import ROUNDING
@@ -59,20 +57,28 @@ class PassDepths(Columns, frozen=True):
         return Passes(rows[first], z[first], contour.ravel())
 
     @cached_property
-    def expected(self) -> Floats:
-        """Per row: Z in step with the other passes, where a pass that is off goes to its Z; NaN elsewhere [mm]."""
-        expected = np.full(len(self.trace), np.nan)
-        for row, z in (*self._beyond_turning, *self._in_steps()):
-            expected[self._row_of_infeed(row)] = z
-        return expected
+    def expected(self) -> dict[int, float]:
+        """
+        By the row that goes to the Z of a pass that is off: the Z in step with the other passes [mm].
+
+        NaN where several would be in step. The Z at which the turning ends for a pass in `is_beyond_turning`.
+        """
+        passes = {**dict(self._beyond_turning), **dict(self._in_steps)}
+        return {row_of_infeed(self.trace, row): z for row, z in passes.items()}
 
     @cached_property
     def is_off(self) -> Mask:
         """Rows that go to the Z of a pass that is off."""
-        return ~np.isnan(self.expected)
+        return self.trace.blocks.mask_of(sorted(self.expected))
 
-    @property
-    def _beyond_turning(self) -> Iterator[tuple[int, float]]:
+    @cached_property
+    def is_beyond_turning(self) -> Mask:
+        """Of the rows that are off, those that are too deep for the bar, not for the other passes."""
+        rows = {row for row, _ in self._beyond_turning} - {row for row, _ in self._in_steps}
+        return self.trace.blocks.mask_of([row_of_infeed(self.trace, row) for row in sorted(rows)])
+
+    @cached_property
+    def _beyond_turning(self) -> list[tuple[int, float]]:
         """
         Passes far below what is turned, or where the bar is wider, much deeper in one step than the cutter is wide, if
         Z with the point a digit to the left lies in what is turned; and the Z at which the turning ends.
@@ -82,47 +88,43 @@ class PassDepths(Columns, frozen=True):
         passes, bar = self.passes, self.air_cuts.bar
         turned = bar.deepest_turned
         if not len(passes) or not np.isfinite(turned):
-            return
+            return []
         section, z = self.trace.mode.section[passes.row], passes.z * bar.trace.path.z_sense
         step = np.where(np.diff(section, prepend=-1) == 0, np.append(0.0, z[:-1]), 0.0) - z
         width = 2 * self.air_cuts.workpiece.radius[passes.row]
         is_wider = bar.inner(passes.row, z) > bar.inner(passes.row, z / 10) + width / 4
         deep = ((z < _BEYOND * turned) | is_wider) & (z / 10 > turned) & (step > _STEEP * width)
-        for row in passes.row[deep].tolist():
-            yield row, turned * bar.trace.path.z_sense
+        return [(row, turned * bar.trace.path.z_sense) for row in passes.row[deep].tolist()]
 
     @cached_property
-    def is_beyond_turning(self) -> Mask:
-        """Of the rows that are off, those that are too deep for the bar, not for the other passes."""
-        of_steps = dict(self._in_steps())
-        rows = [self._row_of_infeed(row) for row, _ in self._beyond_turning if row not in of_steps]
-        return self.trace.blocks.mask_of(rows)
-
-    def _row_of_infeed(self, row: int) -> int:
-        """The row that goes to the Z of a pass, which may stand before a call; its first cut where none does."""
-        infeeds = np.flatnonzero(self.trace.path.moves_z[: row + 1])
-        return int(infeeds[-1]) if len(infeeds) else row
-
-    def _in_steps(self) -> Iterator[tuple[int, float]]:
-        """Passes out of step with the others of their contour, and the Z that would fit."""
+    def _in_steps(self) -> list[tuple[int, float]]:
+        """Passes out of step with the others of their contour, and the Z that would fit; NaN where several would."""
         passes = self.passes
         if len(passes) < _FEWEST:
-            return
+            return []
         order = np.argsort(passes.contour, kind="stable")
-        passes = passes[order]
-        first = np.flatnonzero(np.diff(passes.contour, prepend=-1))
-        for group in np.split(np.arange(len(passes)), first[1:]):
-            z = passes.z[group]
-            if len(z) < _FEWEST:
-                continue
-            off = _outlier(z)
-            if off is None:
-                continue
-            number, value = off
-            row = int(passes.row[group[number]])
-            scale = float(self.trace.lengths.scale[row])
-            if len(z) >= _LEAST or _is_slip(z[number] / scale, value / scale):
-                yield row, value
+        first = np.flatnonzero(np.diff(passes.contour[order], prepend=-1))
+        groups = (passes[group] for group in np.split(order, first[1:]) if len(group) >= _FEWEST)
+        return [off for group in groups if (off := self._out_of_step(group)) is not None]
+
+    def _out_of_step(self, passes: Passes) -> tuple[int, float] | None:
+        """
+        The pass of a contour that is out of step, and the Z that would fit.
+
+        Of two passes, and where either of several may be the wrong one, the digits must show it. A pass that would have
+        to go below the turning is right where another one would not.
+        """
+        off = _outliers(passes.z)
+        if len(off) != 1 or len(passes) < _LEAST:
+            scale = float(self.trace.lengths.scale[passes.row[0]])
+            off = [(number, z) for number, z in off if _is_slip(passes.z[number] / scale, z / scale)]
+        if len(off) > 1:
+            bar = self.air_cuts.bar
+            off = [(number, z) for number, z in off if z * bar.trace.path.z_sense >= bar.deepest_turned] or off
+        if not off:
+            return None
+        number, z = off[0]
+        return int(passes.row[number]), z if len(off) == 1 else np.nan
 
 
 def _is_slip(written: float, intended: float) -> bool:
@@ -133,15 +135,15 @@ def _is_slip(written: float, intended: float) -> bool:
     return long == short or any(long[:index] + long[index + 1 :] == short for index in range(len(long)))
 
 
-def _outlier(z: Floats) -> tuple[int, float] | None:
+def _outliers(z: Floats) -> list[tuple[int, float]]:
     """
-    The pass without which all go down from Z0 in like steps, and the Z that it would have; None where there is not one.
+    The passes of which all others go down from Z0 in like steps without the one, and the Z that each would have.
 
     Of two passes at one Z it is the later one, if the next step is as large as two.
     """
     levels = np.append(0.0, z) if z.max() < 0 else z
     if len(levels) < _LEAST:
-        return None
+        return []
     ahead = len(levels) - len(z)
     off: dict[float, tuple[int, float]] = {}
     for number in range(ahead, len(levels)):
@@ -162,4 +164,4 @@ def _outlier(z: Floats) -> tuple[int, float] | None:
             continue  # a spring pass
         fits = (before + after) / 2 if np.isfinite(before + after) else before - step if number else after + step
         off[float(levels[number])] = number - ahead, float(fits)
-    return next(iter(off.values())) if len(off) == 1 else None
+    return list(off.values())

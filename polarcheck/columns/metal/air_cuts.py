@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck.columns.filling import last_row
 from polarcheck.columns.metal.bar import Bar
 from polarcheck.columns.metal.workpiece import Workpiece
 from polarcheck.columns.trace import Trace
@@ -103,8 +102,7 @@ class AirCuts(Columns, frozen=True):
     @cached_property
     def reason(self) -> States:
         """
-        Per row a Reason, at the first cut of a section or pass that takes nothing off; at its Z where that is wrong and
-        stands in another program.
+        Per row a Reason, at the first cut of a section or pass that takes nothing off; at its Z where that is wrong.
         """
         trace = self.trace
         reason = np.zeros(len(trace), np.int16)
@@ -118,7 +116,7 @@ class AirCuts(Columns, frozen=True):
             (self._others_below, Reason.OTHERS_BELOW),
             (self._above_face, Reason.ABOVE_FACE),
             (self._sign_wrong, Reason.SIGN_WRONG),
-            (self._depth_missing, Reason.DEPTH_MISSING),
+            (self._depth_missing | self._depth_of_pass_missing, Reason.DEPTH_MISSING),
         ):
             reason[mask & self.walls] = why
         # A bar that is too small, or another unit, is one mistake of the whole program.
@@ -128,7 +126,7 @@ class AirCuts(Columns, frozen=True):
         reason = np.where(first, reason, 0).astype(np.int16)
         for row in np.flatnonzero(reason == Reason.SIGN_WRONG).tolist():
             reason[row] = Reason.NOT_IN_AIR
-            reason[block_of_depth(trace, row)] = Reason.SIGN_WRONG
+            reason[row_of_infeed(trace, row)] = Reason.SIGN_WRONG
         return reason
 
     @cached_property
@@ -160,6 +158,29 @@ class AirCuts(Columns, frozen=True):
         idle &= ~trace.axes.moves_plane[behind]
         retracts = trace.mode.anywhere_in_section(alone) | np.append(idle, False)[trace.mode.section]
         return np.asarray(still & near & retracts & ~earlier)
+
+    @property
+    def _depth_of_pass_missing(self) -> Mask:
+        """
+        Without compensation the cut stands at the entry of its section above Z0, the section cuts the same way at the
+        same F below, and the Z word alone behind it moves nowhere.
+        """
+        trace = self.trace
+        path, section, mask = trace.path, trace.mode.section, np.zeros(len(trace), bool)
+        still = np.abs(path.z - path.z_before) <= ROUNDING
+        words = np.flatnonzero(trace.axes.commands_z)
+        follows = np.append(words, -1)[np.searchsorted(words, np.arange(len(trace)), side="right")]
+        idle = (still & trace.mode.in_polar & ~trace.axes.moves_plane)[follows] & (follows >= 0)
+        high = self.walls & still & idle & (path.z > _ABOVE) & (path.z >= self._entry - ROUNDING)
+        if not (high & ~trace.compensation.compensates).any():
+            return mask
+        rows = np.flatnonzero(self.walls)
+        ways = np.stack([path.start[rows], path.end[rows], np.nan_to_num(path.center[rows])], axis=1)
+        for row in np.flatnonzero(high & ~trace.compensation.compensates).tolist():
+            same = np.abs(ways - ways[np.searchsorted(rows, row)]).max(axis=1) <= _SAME
+            same &= (section[rows] == section[row]) & (trace.feedrate.feed[rows] == trace.feedrate.feed[row])
+            mask[row] = bool((path.z[rows[same]] < min(path.z[row], 0.0) - _ABOVE).any())
+        return mask
 
     @property
     def _sign_wrong(self) -> Mask:
@@ -368,10 +389,11 @@ class AirCuts(Columns, frozen=True):
         return np.asarray(result)
 
 
-def block_of_depth(trace: Trace, row: int) -> int:
-    """The row that writes the Z of a cut, where it stands before the call of what cuts; else the row itself."""
-    written = int(last_row(trace.axes.commands_z & trace.mode.in_polar, trace.mode.enters)[row])
-    return written if written >= 0 and trace.run.depth[written] < trace.run.depth[row] else row
+def row_of_infeed(trace: Trace, row: int) -> int:
+    """The row of a section that goes to the Z of a cut, which may stand before a call; the cut where none does."""
+    first = int(trace.mode.sections.enter[trace.mode.section[row]])
+    infeeds = np.flatnonzero(trace.path.moves_z[first : row + 1])
+    return first + int(infeeds[-1]) if len(infeeds) else row
 
 
 def _direction(section: Rows) -> Rows:

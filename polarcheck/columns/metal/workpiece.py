@@ -300,14 +300,17 @@ class Workpiece(Columns, frozen=True):
         return np.asarray((down | drilled) & (trace.mode.section < 0) & ~self.is_mill & ~self.bar.tools.turns)
 
     @cached_property
+    def _drilled(self) -> tuple[Rows, Points]:
+        """Rows that drill, and where [mm]; NaN where that is not known. On X0 every angle of C is one place."""
+        path, row = self.trace.path, np.flatnonzero(self._drills)
+        angle = np.where(np.abs(path.x[row]) <= ROUNDING, 0.0, path.c_axis.sense * path.c_angle[row])
+        return row, np.asarray(path.x[row] * np.exp(1j * np.radians(angle)), np.complex128)
+
+    @property
     def _holes(self) -> tuple[Rows, Points]:
         """Rows that drill, and where [mm]; places that are not known are left out."""
-        trace = self.trace
-        row = np.flatnonzero(self._drills & ~np.isnan(trace.path.x + trace.path.c_angle))
-        return row, np.asarray(
-            trace.path.x[row] * np.exp(1j * np.radians(trace.path.c_axis.sense * trace.path.c_angle[row])),
-            np.complex128,
-        )
+        row, place = self._drilled
+        return row[~np.isnan(place)], place[~np.isnan(place)]
 
     @cached_property
     def _unknown_from(self) -> int:
@@ -315,7 +318,8 @@ class Workpiece(Columns, frozen=True):
         trace = self.trace
         mills = trace.mode.in_polar & trace.path.cuts
         unknown = mills & np.isnan(self.radius) & ~np.isnan(trace.path.z)
-        drills = self._drills & np.isnan(trace.path.x + trace.path.c_angle)
+        row, place = self._drilled
+        drills = trace.blocks.mask_of(row[np.isnan(place)])
         rows = np.flatnonzero(unknown | drills | trace.mode.on_cylinder)
         return int(rows[0]) if len(rows) else len(trace)
 

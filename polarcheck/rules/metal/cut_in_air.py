@@ -80,9 +80,9 @@ def cut_in_air(air_cuts: AirCuts) -> Hits:
         G98 G0 X60. Z2. C0
         G12.1
         G1 X60. F1500
-        Z5.
+        Z5.               (expect: cut-in-air)
         G42 X30. C0 F200
-        C8.66             (expect: cut-in-air)
+        C8.66
         X0 C17.321
         X-30. C8.66
         C-8.66

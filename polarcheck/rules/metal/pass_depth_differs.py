@@ -23,9 +23,10 @@ def pass_depth_differs(pass_depths: PassDepths) -> Mask:
 
     A contour is milled in several passes, each deeper than the last by the same step, and one of them is several steps
     deeper or out of order: a digit or the point of its Z is wrong. The cutter takes the whole depth at once, or the
-    passes behind it take nothing. At least three passes of the same contour must show the step. A pass is told, too,
-    that goes far below what the program turns, or to where the bar is wider, in one step several times as deep as the
-    cutter is wide, where its Z with the point one digit to the left lies in what is turned.
+    passes behind it take nothing. At least three passes of the same contour must show the step; of two, their digits.
+
+    A pass is reported, too, that goes far below what the program turns, or to where the bar is wider, in one step that
+    is several times as deep as the cutter is wide, if its Z with the point a digit to the left lies in what is turned.
 
     Source: builder's guide to G12.1, order of a section.
 
@@ -80,12 +81,16 @@ def pass_depth_differs(pass_depths: PassDepths) -> Mask:
 
 
 def details(hit: Hit, pass_depths: PassDepths) -> Details:
+    import numpy as np
+
     from polarcheck.columns.words.slips import plain_number
 
-    z, needed = hit.trace.path.z[hit.row], float(pass_depths.expected[hit.row])
+    z, needed = hit.trace.path.z[hit.row], pass_depths.expected[hit.row]
     if pass_depths.is_beyond_turning[hit.row]:
         turned = hit.number(needed)
         out_of_step = f"goes in one step far below what is turned, which ends at Z{turned}: look at its digits"
+    elif np.isnan(needed):
+        out_of_step = "is out of step with the others of its contour: one of them has a wrong Z"
     else:
         # To be written, so with a point: without one some controls read an increment.
         in_step = plain_number(needed / float(hit.trace.lengths.scale[hit.row]))
