@@ -16,7 +16,7 @@ import msgspec
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, different
 from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.overcuts.cuts import Cuts, assign_facing_walls, cuts_into
 from polarcheck.geometry.polygons import areas
@@ -86,7 +86,7 @@ def overcuts(
     loop, first = np.unique(contour.loop, return_index=True)
     level_of_cut = level[first][np.searchsorted(loop, loops[own_loop.group])]
     shared = np.bincount(level[first])[level_of_cut] > 1
-    levels = _levels(contour, left, level, np.unique(level_of_cut[shared]), smallest.max(), bar, tolerance)
+    levels = _levels(contour, left, level, different(level_of_cut[shared]), smallest.max(), bar, tolerance)
     unshared, compared_with_level = _left_at_level(
         levels, path, own_loop, np.where(shared, level_of_cut, -1), radius, tolerance
     )
@@ -155,7 +155,7 @@ def _comes_close(walls: Segments, chords: Segments, repeated: Mask, is_ramp: Mas
     """
     contours = polylines(walls.start, walls.end, walls.loop)
     shapely.prepare(contours)
-    loops = np.unique(walls.loop)
+    loops = different(walls.loop)
     result = np.zeros(len(chords), bool)
     ramps, path = np.flatnonzero(is_ramp), chords[~is_ramp]
     lines = lines_of(chords.start[ramps], chords.end[ramps])

@@ -12,7 +12,7 @@ import msgspec
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 
-from polarcheck.foundation.arrays import Floats, Mask, Rows, mask_at, ranges
+from polarcheck.foundation.arrays import Floats, Mask, Rows, different, mask_at, ranges
 from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.overcuts.cuts import Cuts, assign_walls, cuts_into, endless, shortened
 from polarcheck.geometry.overcuts.uncompensated_moves import Bare, FlatLoops
@@ -51,7 +51,7 @@ def cuts_into_part(contour: Contours, loops: FlatLoops, bare: Bare) -> tuple[Cut
     radius = np.zeros(len(groups.top))
     np.maximum.at(radius, group, bare.radius[chords.move])
     near = _comes_near(contour, groups, chords, group, radius)
-    near_groups = np.unique(group[near])
+    near_groups = different(group[near])
     if not len(near_groups):
         return Cuts.none(), none
     is_near = np.isin(groups.group, near_groups)
@@ -66,7 +66,7 @@ def cuts_into_part(contour: Contours, loops: FlatLoops, bare: Bare) -> tuple[Cut
     deep = ~bare.plunges[cuts.move] | (cuts.aside < radius[cuts.group] - contour.tolerance)
     depth = cuts.depth - radius[cuts.group] + bare.radius[cuts.move]
     deep &= (depth > contour.tolerance) & ~(is_endless[cuts.group] & _begins_in(part, cuts, chords))
-    return msgspec.structs.replace(cuts, depth=depth)[deep].worst(), np.unique(tangled)
+    return msgspec.structs.replace(cuts, depth=depth)[deep].worst(), different(tangled)
 
 
 def _begins_in(part: FinishedParts, cuts: Cuts, chords: Segments) -> Mask:

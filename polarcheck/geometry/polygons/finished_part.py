@@ -17,7 +17,7 @@ import msgspec
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, different
 from polarcheck.geometry.contour_ends import gaps_between_ends
 from polarcheck.geometry.polygons import areas
 from polarcheck.geometry.polygons.faces import GRID, Geometries, Standing, Walls, standing
@@ -183,7 +183,7 @@ def _plane(contours: Contours) -> _Plane:
     left = contours.left[row][parts.move]
     nothing = np.zeros(len(parts), bool)
     walls = Walls(parts.start, parts.end, left, ~left, nothing, parts.loop)
-    more = [_joints(chosen, first, half, pitch), _square(np.unique(group), half, pitch)]
+    more = [_joints(chosen, first, half, pitch), _square(different(group), half, pitch)]
     beside = np.zeros(len(contours.radius))
     if contours.closes_beside:
         lines, length = closed_beside(loops, walls, number, along)
@@ -284,7 +284,7 @@ def _standing(plane: _Plane, lines: Walls | None, chosen: Mask, thinnest: float)
 def _begun_behind(ring: Rows, is_other: Mask) -> Rows:
     """The edges of rings, in the order of the rings; those with lines that are no walls begin behind one of these."""
     order = np.arange(len(ring))
-    for number in np.unique(ring[is_other]).tolist():
+    for number in different(ring[is_other]).tolist():
         first, until = np.searchsorted(ring, number), np.searchsorted(ring, number, side="right")
         begins = np.flatnonzero(is_other[first:until] & ~np.roll(is_other[first:until], -1))
         if len(begins):

@@ -165,6 +165,7 @@ def _pairs(walls: _Walls, tangled: Mask) -> Iterator[tuple[Rows, Rows]]:
     tree = shapely.STRtree(shapely.box(*box))
     remaining = _PAIRS * np.bincount(walls.group, minlength=len(tangled)) + _FREE_PAIRS
     begin, step = 0, _LEAST_AT_A_TIME
+    batches, count = [], 0
     while begin < len(group):
         keep_time()
         queried = np.arange(begin, min(begin + step, len(group)))
@@ -183,6 +184,14 @@ def _pairs(walls: _Walls, tangled: Mask) -> Iterator[tuple[Rows, Rows]]:
         run, second = run[kept], second[kept]
         remaining -= np.bincount(group[run], size[run] * size[second], len(tangled)).astype(np.int64)
         tangled |= remaining < 0
+        # Most groups with too many pairs of runs become tangled here, before any pair of walls is compared.
+        batches.append((run, second))
+        count += len(run)
+        if count < _PAIRS_AT_A_TIME and begin < len(group):
+            continue
+        run, second = (np.concatenate(column) for column in zip(*batches, strict=True))
+        kept = ~tangled[group[run]]
+        run, second, batches, count = run[kept], second[kept], [], 0
         for part in _shares(size[run] * size[second]):
             kept = part[~tangled[group[run[part]]]]
             yield _each_wall(walls, boxes, runs, run[kept], second[kept])
@@ -336,7 +345,9 @@ def _meetings(walls: _Walls, i: Rows, j: Rows) -> _Meetings:
 def _cut(walls: _Walls, meetings: list[_Meetings], tangled: Mask) -> Edges:
     """The walls in parts, those of tangled groups left out."""
     touches = _Touches.concatenated([part for part, _, _ in meetings])
+    touches = touches[~tangled[walls.group[touches.wall]]]
     crossings = _Crossings.concatenated([part for _, part, _ in meetings])
+    crossings = crossings[~tangled[walls.group[crossings.first]]]
     same = _SameNodes.concatenated([part for _, _, part in meetings])
     begin, end = walls.nodes[walls.a[crossings.first]], walls.nodes[walls.b[crossings.first]]
     nodes = np.concatenate([walls.nodes, begin + (end - begin) * crossings.along_first])

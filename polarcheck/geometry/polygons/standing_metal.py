@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, Table
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, Table, different
 from polarcheck.foundation.errors import TooHardError
 from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.polygons import areas
@@ -50,12 +50,12 @@ def area_of(sweeps: Sweeps, less: float = 0.0) -> Any:
     covered: list[Any] = []
     curves = sweeps.curves
     is_place = (np.abs(curves.end - curves.start) <= ZERO) & np.isnan(curves.center)
-    for radius in np.unique(sweeps.radius).tolist():
+    for radius in different(sweeps.radius).tolist():
         size = radius - less
         if size <= ROUNDING:
             continue
         same = sweeps.radius == radius
-        places = np.unique(curves.end[same & is_place])
+        places = different(curves.end[same & is_place])
         covered.extend(shapely.buffer(shapely.points(coordinates(places)), size, quad_segs=24))
         path = curves[same & ~is_place]
         if not len(path):
