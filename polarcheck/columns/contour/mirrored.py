@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from polarcheck.columns.contour.overcuts import Overcuts
+from polarcheck.columns.contour.skipped_loops import SkipReason
 from polarcheck.columns.modes.since import Since
 from polarcheck.columns.path.ramps import Ramps
 from polarcheck.columns.path.tool_center import OtherRadius, ToolCenter
@@ -73,6 +74,9 @@ class Mirrored(Columns, frozen=True):
         if not candidates.any():
             return candidates
         candidates = self._any(candidates) & ~self._any(self.ramps.writes_side_again)
+        # A contour that crosses itself too often does so on either side.
+        overcuts = self.overcuts
+        candidates &= ~self._any(overcuts.skipped.rows(overcuts.loop, SkipReason.CROSSES))
         # The cheap tests come first; the search ends when no candidate is left.
         for test in (
             self._comes_out_at_both_ends,
@@ -91,7 +95,7 @@ class Mirrored(Columns, frozen=True):
 
     def _comes_out_at_both_ends(self, rows: Mask) -> Mask:
         """All rows of the loops whose start-up and offset cancel run through the part."""
-        ramp = self._trial(rows, 1).comes_out_of_part
+        ramp = self.overcuts.comes_out_of_part(rows)
         return self._any(ramp & self.trace.compensation.starts_up) & self._any(ramp & self.trace.compensation.cancels)
 
     def _trial(self, rows: Mask, share: float) -> Trial:

@@ -30,6 +30,9 @@ if TYPE_CHECKING:
     from polarcheck.geometry.overcuts.cuts import Cuts
     from polarcheck.geometry.segments import Curves
 
+#: Largest distance of two points that are intended as one [tolerances].
+_ROUNDINGS = 10
+
 
 def loop_of_row(trace: Trace) -> Rows:
     """
@@ -328,6 +331,25 @@ class Overcuts:
             (z_of_ramp <= z_of_wall + ROUNDING) | (z_of_ramp < -ROUNDING),
         )
         return column_at(len(trace), ramp, deep, False)
+
+    def comes_out_of_part(self, rows: Mask) -> Mask:
+        """
+        Those of these start-ups and offset cancels that run through the part as programmed, if they lie at the depth of
+        their contour; others, if the contour begins or ends within the part.
+
+        The part is that for a cutter of any size: only a gap that rounding leaves is closed.
+        """
+        from polarcheck.geometry.polygons.depth_inside import depth_inside
+
+        trace, tolerance = self.trace, self.trace.machine.compensation.overcut_tolerance
+        starts_up = trace.compensation.starts_up
+        has_walls = np.isin(self._loop_of_ramps, self.walls[0].loop)
+        ramp = np.flatnonzero(has_walls & rows & (starts_up | trace.compensation.cancels) & ~trace.path.is_arc)
+        contour_at = np.where(starts_up, trace.path.end, trace.path.start)[ramp]
+        far = np.where(starts_up, trace.path.start, trace.path.end)[ramp]
+        ramps = np.where(self._at_depth[ramp], far, contour_at), contour_at
+        depth = depth_inside(*self.walls, ramps, self._loop_of_ramps[ramp], tolerance, _ROUNDINGS * tolerance)
+        return trace.blocks.mask_of(ramp[depth > _ROUNDINGS * tolerance])
 
     @cached_property
     def bar(self) -> float:

@@ -11,9 +11,6 @@ from polarcheck.columns.path.tool_center import OtherRadius, ToolCenter
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Mask, cached_property
 
-#: Largest distance of two points that are intended as one [tolerances].
-_ROUNDINGS = 10
-
 
 class Trial(Overcuts):
     """
@@ -25,7 +22,6 @@ class Trial(Overcuts):
 
     def __init__(self, trace: Trace, trial_radius: OtherRadius) -> None:
         super().__init__(trace, ToolCenter(trace, Infeed(trace), other_radius=trial_radius))
-        self.tried = trial_radius.rows
 
     @property
     def bar(self) -> float:
@@ -53,24 +49,3 @@ class Trial(Overcuts):
         faulty |= tool.movement_missing | tool.arc_center_on_path
         faulty[tool.moves.row[~tool.moves.known]] = True
         return faulty
-
-    @cached_property
-    def comes_out_of_part(self) -> Mask:
-        """
-        Start-ups and offset cancels that run through the part as programmed, if they lie at the depth of their contour;
-        others, if the contour begins or ends within the part.
-
-        The part is that for a cutter of any size: only a gap that rounding leaves is closed.
-        """
-        from polarcheck.geometry.polygons.depth_inside import depth_inside
-
-        trace, tolerance = self.trace, self.trace.machine.compensation.overcut_tolerance
-        has_walls = np.isin(self._loop_of_ramps, self.walls[0].loop)
-        ramp = np.flatnonzero(
-            has_walls & self.tried & (trace.compensation.starts_up | trace.compensation.cancels) & ~trace.path.is_arc
-        )
-        contour_at = np.where(trace.compensation.starts_up, trace.path.end, trace.path.start)[ramp]
-        far = np.where(trace.compensation.starts_up, trace.path.start, trace.path.end)[ramp]
-        ramps = np.where(self._at_depth[ramp], far, contour_at), contour_at
-        depth = depth_inside(*self.walls, ramps, self._loop_of_ramps[ramp], tolerance, _ROUNDINGS * tolerance)
-        return trace.blocks.mask_of(ramp[depth > _ROUNDINGS * tolerance])

@@ -6,7 +6,7 @@ import msgspec
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, mask_at
 from polarcheck.geometry.polygons import areas
 from polarcheck.geometry.polygons.faces import coordinates, gathered, lines_of
 from polarcheck.geometry.polygons.finished_part import Contours, FinishedParts, finished_parts
@@ -44,15 +44,17 @@ def depth_inside(
     loops, group = np.unique(loop, return_inverse=True)
     half = np.full(len(loops), gap / 2)
     part = finished_parts(Contours(contour, left, loops, np.arange(len(loops)), half, np.nan, tolerance))
-    is_known = np.where(part.open, _ends_outside(contour, loops), _is_whole(part, contour, loops, tolerance))
     start, end = lines
     sample = start[:, None] + (end - start)[:, None] * np.linspace(0, 1, _POINTS) + (part.pitch * group)[:, None]
     points = shapely.points(coordinates(sample))
     shapely.prepare(part.polygon)
     inside = shapely.contains(part.polygon[group][:, None], points)
-    with np.errstate(invalid="ignore"):  # an empty part has no outline
-        depth = shapely.distance(shapely.boundary(part.polygon)[group][:, None], points)
-    return np.asarray(np.where(inside & is_known[group][:, None], depth, 0.0).max(axis=1, initial=0.0))
+    reached = mask_at(len(loops), group[inside.any(axis=1)])
+    is_known = np.where(part.open, _ends_outside(contour, loops), _is_whole(part, reached, contour, loops, tolerance))
+    depth = np.zeros(inside.shape)
+    line, _ = deep = np.nonzero(inside & is_known[group][:, None])
+    depth[deep] = shapely.distance(shapely.boundary(part.polygon)[group[line]], points[deep])
+    return np.asarray(depth.max(axis=1, initial=0.0))
 
 
 def _ends_outside(contour: Curves, loops: Rows) -> Mask:
@@ -66,9 +68,10 @@ def _ends_outside(contour: Curves, loops: Rows) -> Mask:
     return np.asarray(nearer >= _OUTSIDE * farthest)
 
 
-def _is_whole(part: FinishedParts, contour: Curves, loops: Rows, tolerance: float) -> Mask:
+def _is_whole(part: FinishedParts, reached: Mask, contour: Curves, loops: Rows, tolerance: float) -> Mask:
     """
-    True for parts that are no sliver and whose outline reaches about as far as the contour.
+    True for parts, of those that a line reaches, that are no sliver and whose outline reaches about as far as the
+    contour.
 
     A contour that runs back over itself is at best a lead: no part has a wall with the tool on both sides.
     """
@@ -77,9 +80,9 @@ def _is_whole(part: FinishedParts, contour: Curves, loops: Rows, tolerance: floa
     length = np.bincount(part.group, np.abs(part.end - part.start), count)
     row, group = members(contour.loop, loops)
     reach = _reach(np.concatenate([contour.start[row], contour.end[row]]), np.tile(group, 2), count)
-    whole = _reach(part.start, part.group, count) >= _LEAST * reach
+    whole = reached & (_reach(part.start, part.group, count) >= _LEAST * reach)
     # Walls that cross again and again bound no part, and their common length would take quadratic time.
-    compared = np.flatnonzero(whole & ~part.open & ~shapely.is_empty(part.polygon))
+    compared = np.flatnonzero(whole & ~part.open)
     whole[compared] &= _retraced(contour, loops[compared], part.pitch, tolerance) <= _RETRACED * length[compared]
     return np.asarray((4 * np.pi * np.abs(area) >= _SLIVER * length**2) & whole)
 
