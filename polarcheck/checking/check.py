@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 import re
 from collections import Counter
@@ -13,11 +14,12 @@ import msgspec
 
 from polarcheck.checking.called_files import in_the_file
 from polarcheck.checking.engine import Engine, in_order, with_following
-from polarcheck.checking.not_evaluated import all_unevaluated, bounds_not_reported
+from polarcheck.checking.not_evaluated import bounds_not_reported, unevaluated_by, unexecuted
 from polarcheck.checking.polar_sections import known_stock, polar_sections
 from polarcheck.checking.suppression import UNUSED, divided
 from polarcheck.checking.written_for import stated_by
 from polarcheck.columns.words.allow_mention import Used, mentions_allow
+from polarcheck.foundation.arrays import cached_property
 from polarcheck.foundation.finding import (
     DESELECTED,
     ERROR,
@@ -27,6 +29,7 @@ from polarcheck.foundation.finding import (
     UNVERIFIED,
     FileReport,
     Finding,
+    KnownStock,
     NotEvaluated,
     PolarSection,
     Undecided,
@@ -44,6 +47,9 @@ from polarcheck.rules.rule import Hits, Rule, load_all
 from polarcheck.rules.tables import Tables
 
 if TYPE_CHECKING:
+    pass
+
+if TYPE_CHECKING:
     from polarcheck.columns.contour.correction import Correction
     from polarcheck.foundation.arrays import Rows
 
@@ -52,6 +58,8 @@ _SKIP = lazy_pattern(r"\s*(?:N\s*\d+\s*)?/", re.IGNORECASE)
 _OF_SWITCH = "polar-switch-unknown"
 #: Areas checked in every program.
 LOOKED_AT = ("text", "flow", "position")
+#: In longer programs a table is forgotten behind its last reader [rows].
+_LONG = 100_000
 
 
 def read(
@@ -235,27 +243,63 @@ def engine_of(
     return Engine(tables, levels, [rule for rule in active if "allows" not in rule.parameters], known_hits)
 
 
-def _less_regular(engine: Engine) -> list[tuple[Rows, Correction]]:
-    """The rows of contours that may be less regular than they were meant to be, and what would mend each."""
-    rule = engine.rules.get("nearly-regular-contour")
-    if rule is None or engine.trace.run.unknown_words or not len(engine.hits(rule).mask):
-        return []
-    likely: list[tuple[Rows, Correction]] = engine.tables["regularity"].likely
-    return likely
+class _Remainder:
+    """What a report says beside its findings, each made when it is first read (turns.READ names its tables)."""
+
+    def __init__(self, engine: Engine) -> None:
+        self.engine = engine
+        self._missing: dict[str, list[NotEvaluated]] = {}
+
+    @cached_property
+    def sections(self) -> list[PolarSection]:
+        """The polar sections that the verdict rests on."""
+        return polar_sections(self.engine.tables)
+
+    @cached_property
+    def stock(self) -> KnownStock | None:
+        """The bar; None where nothing is known of it."""
+        return known_stock(self.engine.tables)
+
+    @cached_property
+    def less_regular(self) -> list[tuple[Rows, Correction]]:
+        """The rows of contours that may be less regular than they were meant to be, and what would mend each."""
+        engine = self.engine
+        rule = engine.rules.get("nearly-regular-contour")
+        if rule is None or engine.trace.run.unknown_words or not len(engine.hits(rule).mask):
+            return []
+        likely: list[tuple[Rows, Correction]] = engine.tables["regularity"].likely
+        return likely
+
+    @cached_property
+    def unexecuted(self) -> list[NotEvaluated]:
+        """The blocks that were not executed, or without full knowledge."""
+        return [*unexecuted(self.engine.tables)]
+
+    def missing(self, rule: Rule) -> list[NotEvaluated]:
+        """Return what a rule could not evaluate."""
+        if rule.name not in self._missing:
+            self._missing[rule.name] = unevaluated_by(self.engine.tables, rule)
+        return self._missing[rule.name]
 
 
 def report_of(engine: Engine, number: int = 0) -> FileReport:
     """Report the findings of one run, and what could not be evaluated. number: of the run, of those of its file."""
     tables, trace = engine.tables, engine.trace
+    remainder = _Remainder(engine)
+    if len(trace) > _LONG:
+        from polarcheck.checking.turns import read_in_turn  # imported late: most programs are short
+
+        read_in_turn(engine, remainder.missing, functools.partial(getattr, remainder))
     found = engine.findings()
-    less_regular = _less_regular(engine)
+    less_regular = remainder.less_regular
     if less_regular or any(engine.rules[finding.rule].is_symptom for finding in found):
         from polarcheck.checking.explanations import explained  # imported late: most files have no symptom
 
         found = explained(engine, found, number, less_regular)
     findings, silenced = divided(in_order(in_the_file(found, trace, engine.answered, engine.rows_in_calls)))
-    unevaluated = (*bounds_not_reported(tables, _all(findings)), *all_unevaluated(tables, engine.rules.values()))
-    not_evaluated = list(dict.fromkeys((*unevaluated, *engine.unlisted)))
+    missing = [entry for rule in engine.rules.values() for entry in remainder.missing(rule)]
+    bounds = bounds_not_reported(tables, _all(findings))
+    not_evaluated = list(dict.fromkeys((*bounds, *remainder.unexecuted, *missing, *engine.unlisted)))
     text = trace.text
     programs = [name for block, name in engine.heads if not text.source.part_of(int(text.blocks.line[block]))]
     return FileReport(
@@ -264,12 +308,12 @@ def report_of(engine: Engine, number: int = 0) -> FileReport:
         blocks=trace.run.block_count,
         sections=len(trace.mode.sections),
         verdict=verdict(findings, not_evaluated),
-        polar_sections=polar_sections(tables),
+        polar_sections=remainder.sections,
         findings=findings,
         not_evaluated=not_evaluated,
         looked_at=looked_at(tables),
         silenced=silenced,
-        stock=known_stock(tables),
+        stock=remainder.stock,
     )
 
 

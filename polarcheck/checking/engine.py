@@ -139,6 +139,7 @@ class Engine:
         for name, table in self.tables.computed():
             columns: dict[str, Any] = getattr(table, "__dict__", {})
             first = self._columns_seen.get(name, 0)
+            first = first if first <= len(columns) else 0  # the table has forgotten its columns
             self._columns_seen[name] = len(columns)
             for key in list(islice(columns, first, None)):
                 columns[key] = self._shared(columns[key])

@@ -76,12 +76,11 @@ class Missing(NamedTuple):
     rate: float = math.nan
 
 
-def all_unevaluated(tables: Tables, rules: Iterable[Rule]) -> Iterator[NotEvaluated]:
-    """Report the blocks that were not executed, and the blocks that each rule could not evaluate."""
-    yield from unexecuted(tables)
-    for rule in rules:
-        if (rule.companion("needs") or rule.name in _EXTRA_REASONS) and tables.may_hold(rule.parameters):
-            yield from merged_by_reason(unevaluated(tables, rule), tables["machine"])
+def unevaluated_by(tables: Tables, rule: Rule) -> list[NotEvaluated]:
+    """Return the blocks that a rule could not evaluate, by reason."""
+    if (rule.companion("needs") or rule.name in _EXTRA_REASONS) and tables.may_hold(rule.parameters):
+        return [*merged_by_reason(unevaluated(tables, rule), tables["machine"])]
+    return []
 
 
 def bounds_not_reported(tables: Tables, findings: Iterable[Finding]) -> Iterator[NotEvaluated]:

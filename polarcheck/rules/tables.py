@@ -267,6 +267,28 @@ class Tables(dict[str, Any]):
         """The tables computed so far, by name."""
         return iter(self.items())
 
+    def forget(self, name: str) -> None:
+        """Drop the columns of a table: they are made again when they are asked for. Polygons stay, which take long."""
+        table = self.get(name)
+        if table is None or getattr(table, "has_areas", False):
+            return
+        columns: dict[str, Any] = getattr(table, "__dict__", {})
+        for column in [*columns]:
+            if isinstance(getattr(type(table), column, None), functools.cached_property):
+                del columns[column]
+        if not isinstance(TABLES[name].function, type):  # a part of another table
+            del self[name]
+
+
+@functools.cache
+def made_from(name: str) -> frozenset[str]:
+    """Return the names of the tables that a table is made from, and its own; none for what is given."""
+    if name not in TABLES:
+        return frozenset()
+    names = parameters(TABLES[name].function)
+    sources = ("upright" if source == "trace" and name in _UPRIGHT else source for source in names)
+    return frozenset({name}).union(*map(made_from, sources))
+
 
 @functools.cache
 def _only_with(names: tuple[str, ...]) -> tuple[str, ...]:
