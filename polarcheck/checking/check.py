@@ -47,9 +47,6 @@ from polarcheck.rules.rule import Hits, Rule, load_all
 from polarcheck.rules.tables import Tables
 
 if TYPE_CHECKING:
-    pass
-
-if TYPE_CHECKING:
     from polarcheck.columns.contour.correction import Correction
     from polarcheck.foundation.arrays import Rows
 
