@@ -182,14 +182,14 @@ def test_an_angle_among_the_points_of_a_hexagon(machine: str, axis: str) -> None
     )
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(("tool", "line"), [("T0105", 2), ("T0105 (EM)", 2), ("M8 / T0105", 3)])
 def test_a_ramp_that_is_too_short_names_the_offset_of_another_tool(tool: str, line: int) -> None:
     found = messages(SOUND.replace("T0101", tool).replace("G1 X60.", "G1 X52."), tool="5:radius=8")
     assert f"with R 8 mm of T0105 in line {line} it needs" in found["start-up-shorter-than-radius"]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_a_ramp_that_would_be_long_enough_in_inch() -> None:
     program = SOUND.replace("X60.", "X2.").replace("X40.", "X1.5").replace("X-40.", "X-1.5").replace("20.", ".75")
     found = messages(program, tool="1:radius=3.175")["start-up-shorter-than-radius"]

@@ -215,6 +215,7 @@ def test_array_types_are_defined_once() -> None:
     assert assigned == {"arrays.py"}
 
 
+@pytest.mark.ci
 def test_rules_neither_loop_nor_load_numpy() -> None:
     """The function of the rule; its details are made for a finding, and import what they need."""
     allowed = {"rules.rule", "rules.causes", "foundation.states", "geometry.tolerances"}

@@ -152,7 +152,7 @@ def test_lines_that_shift_and_an_update_keep_what_is_known() -> None:
     assert told() == []
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_a_baseline_without_these_numbers_compares_the_others() -> None:
     create(narrow("-.5", "150"))
     text = Path(FILE).read_text()

@@ -231,7 +231,7 @@ def test_the_start_angle_of_the_whole_part_is_free(example: Path) -> None:
     ]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_corners_that_controls_go_round_in_another_way_are_named(example: Path) -> None:
     edit("post.toml", 'path = "programmed"', "")
     found = {entry["name"]: entry["reasons"] for entry in certificate(example)["cases"] if entry["reasons"]}
@@ -287,7 +287,7 @@ def test_a_radius_that_is_not_known_is_no_pass(example: Path) -> None:
 # ---- exit codes ----
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_a_program_that_is_not_there(example: Path) -> None:
     Path(CONTOUR).unlink()
     result = certify(example)
@@ -471,7 +471,7 @@ def test_a_report_overwrites_no_file_of_the_run(example: Path, output: str) -> N
     assert certify(example, "-o", output).exit_code == 2
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_many_controls_stand_below_each_other(example: Path) -> None:
     controls = "".join(f"[controls.a-lathe-with-a-long-name-{number}]\n" for number in range(9))
     edit("post.toml", "[feature.contour]\n", f"{controls}\n[feature.contour]\n")
@@ -513,7 +513,7 @@ def test_python_gives_the_certificate_of_the_command(example: Path) -> None:
 # ---- certify init ----
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_the_suite_is_a_manifest_with_drawings(tmp_path: Path) -> None:
     from polarcheck.program.machines import drawing_file
     from polarcheck.rewrite.certify.jobs import JOBS
@@ -543,7 +543,7 @@ def test_the_suite_is_a_manifest_with_drawings(tmp_path: Path) -> None:
     assert (first.exit_code, first.stdout.count("no golden trace yet: certify --update")) == (1, 1)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_files_are_relative_to_the_manifest(example: Path) -> None:
     certify("init", "suite")
     part = 'shape = "hexagon"\nacross_flats = 24.0\nturned = 0.0\nz = -3.0\n'

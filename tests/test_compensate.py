@@ -357,7 +357,7 @@ def test_the_command() -> None:
     assert Path("a.nc").read_text() == text
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_long_paths() -> None:
     """25 depths of 100 chords each, as a post writes a shaft."""
     sides = polygon([cmath.rect(25, math.tau * (k + 0.5) / 99) for k in range(99)])

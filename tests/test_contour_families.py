@@ -223,7 +223,7 @@ def test_what_hangs_on_a_bar_that_is_not_known_is_undecided(judged: str, depths:
     assert class_of(verdict, *depths) == judged
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_the_command_prints_a_table_and_keeps_what_differs(tmp_path: Path) -> None:
     command = [sys.executable, GENERATOR, "--count", "3", "--seed", "0", "--family", "polygons", "--keep", tmp_path]
     done = subprocess.run(command, capture_output=True, text=True, check=False)

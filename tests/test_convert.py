@@ -621,7 +621,7 @@ REASONS = (
 )
 
 
-@pytest.mark.one_in(7)
+@pytest.mark.one_in(12)
 @pytest.mark.ci
 @pytest.mark.parametrize("target", [SOURCE, "okuma-osp", "siemens-transmit", "haas-lathe", "mitsubishi-m700", "hurco"])
 @pytest.mark.parametrize("source", ["doosan", "haas-lathe", "okuma-osp", "siemens-transmit"])
@@ -803,6 +803,7 @@ OF_HAAS = "%\nO1\nG98 G40\nT0101\nG0 X3. Z.1 C0\nG17\nG112\nG1 X1. Y.4 F8.\nX1.5
 AND_DWELLS = MILLED_AT_30.replace("G13.1", "G13.1\nG4 P1500")
 
 
+@pytest.mark.ci
 @pytest.mark.usefixtures("own_folder")
 @looped(
     ("program", "source", "target", "keys"),

@@ -198,7 +198,7 @@ def test_a_side_that_is_off_is_told_with_its_block(side: int, off: float, turned
     assert ("too much stays" if off > 0 else "too much is cut away") in found.message
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_a_part_agrees_within_the_tolerance_that_is_given() -> None:
     text = program(polygon(6, 13.5, {2: 0.05}))
     for tolerance, count in ((None, 1), (0.049, 1), (0.051, 0)):

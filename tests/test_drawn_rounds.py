@@ -121,6 +121,7 @@ def test_nor_is_it_on_a_bar_of_that_size(name: str) -> None:
         assert "of the round of a.dxf a part is milled" in outcome(report(text, CIRCLES[name], 40.0))
 
 
+@pytest.mark.ci
 @looped("name", [name for name in CIRCLES if name != "two splines"])
 @looped("stock", [None, 50.0])
 def test_a_whole_circle_agrees_with_what_is_nearly_one(name: str, stock: float | None) -> None:
@@ -135,7 +136,7 @@ def test_a_circle_of_two_splines_is_too_large() -> None:
     assert bulge == pytest.approx(0.367, abs=1e-3)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("size", [20.05, 20.5, 24.0])
 def test_a_curve_that_lies_beyond_the_bar_is_compared_with_nothing(size: float) -> None:
     """It touches the bar where splines meet; with more of the drawing within the bar, that is compared."""

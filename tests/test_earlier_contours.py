@@ -134,6 +134,7 @@ def pocket(length: float, width: float, radius: float = 6.0) -> Loop:
     return rectangle(length, width, radius, inside=True)
 
 
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize(
     ("rough", "finish", "c", "loss"),
     [
@@ -157,6 +158,7 @@ def test_a_contour_of_another_shape_in_what_is_cleared_is_told() -> None:
     assert losses(hexagon, milled(2, circle(28), z=-6.8)) == []
 
 
+@pytest.mark.ci
 def test_an_eccentric_contour_at_another_c_is_told() -> None:
     """Its points turn about X0: one that lies 14 mm off it by 14 * 5 deg, of which 0.2 mm were left."""
     loss = 2 * 8 * math.sin(math.radians(2.5)) - 0.2

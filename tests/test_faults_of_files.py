@@ -354,7 +354,7 @@ def nested(folder: str, depth: int) -> Iterator[None]:
             Path(folder).rmdir()
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @of_linux
 def test_folders_may_be_nested_deeper_than_functions() -> None:
     with nested("d", 1500):

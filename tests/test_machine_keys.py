@@ -452,7 +452,7 @@ def test_no_key_is_forgotten() -> None:
     assert not set(USES) & set(NOT_CHECKED)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("key", LISTS, one_in=90)
 def test_a_list_may_be_empty_or_hold_codes_of_ones_own(key: str) -> None:
     """No rule counts on a code to be there; what is listed is no unknown code."""

@@ -237,6 +237,7 @@ _ALIKE = [
 ]
 
 
+@pytest.mark.ci
 @looped(("contour", "twin"), _ALIKE, ids=map(str, range(len(_ALIKE))))
 def test_a_corner_of_each_form_is_the_one_that_is_written_out(contour: str, twin: str | None) -> None:
     if twin is None:
@@ -287,6 +288,7 @@ _NOT_MADE = [
 ]
 
 
+@pytest.mark.ci
 @looped(("contour", "reason"), _NOT_MADE)
 def test_a_corner_that_is_not_known_is_not_evaluated(contour: str, reason: str) -> None:
     report = report_of(HEAD + _PLAIN.format(contour) + TAIL, MACHINE, TOOL)

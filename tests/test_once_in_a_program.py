@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pytest
 from cases import looped
 from hexagon_program import CONTROLS, CUTTER, HEX, hexagon
 from programs import report_of
@@ -25,6 +26,7 @@ NOT_THERE = (("mazak-eia", "feed per revolution"), ("gsk-988", "a point"))
 @looped(
     ("control", "name"),
     [(control, name) for control in CONTROLS for name in REPEATED if (control, name) not in NOT_THERE],
+    one_in=2,
 )
 def test_a_mistake_of_three_sections_is_one_finding(control: str, name: str) -> None:
     (old, new), rule, told = REPEATED[name]
@@ -45,6 +47,7 @@ def test_a_silenced_number_stands_for_no_other() -> None:
     assert [(finding.rule, finding.line) for finding in report.findings] == [("number-without-point", 25)]
 
 
+@pytest.mark.ci
 def test_a_cutter_too_large_for_ramps_and_an_arc_is_one_finding() -> None:
     """R 12 does not fit into R 4, nor into ramps of 10 mm; with a ramp of 3 mm that is told, too, since R 4 needs 4."""
     way = ("C0 F150/C10.392", "C0 F150/C2./G2 X34. C3.354 R4./G1 X36. C10.392")
@@ -86,6 +89,7 @@ def test_what_is_to_be_written_and_where(change: tuple[str, str], rule: str, sai
     assert any(said in finding.message for finding in report.findings if finding.rule == rule), report.findings
 
 
+@pytest.mark.ci
 @looped(
     ("changes", "rule", "line"),
     [

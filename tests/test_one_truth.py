@@ -174,6 +174,7 @@ def certified(folder: Path, control: str, golden: str, text: str, verdict: str =
     return result
 
 
+@pytest.mark.ci
 @looped("control", PROGRAMS)
 def test_the_program_is_sound_and_like_itself(control: str, tmp_path: Path) -> None:
     text = program(control)
@@ -185,7 +186,7 @@ def test_the_program_is_sound_and_like_itself(control: str, tmp_path: Path) -> N
 
 
 @pytest.mark.ci
-@looped(("control", "name"), pairs(UNKNOWN))
+@looped(("control", "name"), pairs(UNKNOWN), one_in=4)
 def test_a_value_that_is_not_known_is_known_to_no_command(control: str, name: str, tmp_path: Path) -> None:
     sound, text = program(control), program(control, UNKNOWN[name][control])
     report = report_of(text, control, CUTTER)
@@ -212,7 +213,7 @@ def test_a_value_that_is_not_known_is_known_to_no_command(control: str, name: st
 
 
 @pytest.mark.ci
-@looped(("control", "name"), pairs(ORDERS))
+@looped(("control", "name"), pairs(ORDERS), one_in=4)
 def test_another_order_is_another_program(control: str, name: str, tmp_path: Path) -> None:
     sound, text = program(control), program(control, ORDERS[name][control])
     assert compared(tmp_path, control, sound, text).exit_code == 1
@@ -258,7 +259,7 @@ OF_Z = {
 
 
 @pytest.mark.ci
-@looped("control", OF_Z)
+@looped("control", OF_Z, one_in=3)
 def test_moves_of_z_alone_are_those_of_the_path(control: str, tmp_path: Path) -> None:
     sound, (old, deeper, other_feed, divided) = program(control), OF_Z[control]
     for new, code in ((deeper, 1), (other_feed, 1), (divided, 0)):

@@ -105,7 +105,7 @@ def test_other_formats_beside_it_know_nothing_of_pictures() -> None:
     assert check("a.nc", *RADIUS, "--format", "jsonl", "-o", "html:a.html").stdout.count("\n") == 3
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_a_folder_gets_a_page_for_each_program_and_plotly_once() -> None:
     make(a__nc=GROOVE, b__nc=HEXAGON)
     Path("sub").mkdir()

@@ -247,7 +247,7 @@ def test_a_golden_trace_outside_is_compared_and_not_quoted() -> None:
         assert not quotes(MARK, "--case", "contour/lathe-7", "--update")
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_the_path_of_a_program_outside_is_compared_and_not_quoted() -> None:
     shutil.copytree(EXAMPLE, ".", dirs_exist_ok=True)
     text = Path("sinumerik/contour.mpf").read_text("utf-8")

@@ -49,6 +49,7 @@ def check(*words: str) -> Printed:
     return found(*words) or run(*words)
 
 
+@pytest.mark.one_in(5)
 @pytest.mark.parametrize("form", ["text", "short", "concise", "json", "jsonl"])
 def test_what_is_printed_again_is_what_was_printed(form: str) -> None:
     words = (*NAMED, "--format", form, "--tool", "77:radius=4", "--color", "always")

@@ -118,7 +118,7 @@ def test_the_contour_is_judged_as_if_they_switched_the_mode(
         assert finding.fix is None
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("machine", ["mitsubishi-m700", "fanuc-30i", "doosan"])
 @looped(
     ("before", "block", "rule"),

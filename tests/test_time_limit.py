@@ -229,7 +229,7 @@ def test_a_pass_that_is_written_once_more_deeper_sweeps_nothing_else(monkeypatch
 # ---- the same, with less ----
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.one_in(3)
 @pytest.mark.parametrize("family", ["pockets", "bosses", "passes"])
 def test_rings_by_what_they_lie_in_or_one_by_one(family: str, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -418,6 +418,7 @@ GIVEN_UP = {
 }
 
 
+@pytest.mark.ci
 @pytest.mark.one_in(4)
 @pytest.mark.parametrize(
     "share", [0.5, pytest.param(0.1, marks=pytest.mark.ci), pytest.param(0.9, marks=pytest.mark.ci)]

@@ -50,7 +50,7 @@ INSIDE = [("approach-inside-stock", "error")]
 
 
 @pytest.mark.ci
-@looped("spigot", list(SPIGOTS))
+@looped("spigot", list(SPIGOTS), one_in=7)
 @looped("stock", [{"diameter": 50}, {"diameter": 56, "face": 1}, {"hexagon": 44}, {"diameter": 50, "bore": 8}, {}])
 def test_the_approach_clears_what_was_turned(spigot: str, stock: dict[str, float]) -> None:
     assert told(hexagon(spigot), **stock) == []
@@ -187,7 +187,7 @@ def test_sound_programs_that_turn_first_are_told_nothing(seed: int) -> None:
 
 
 @pytest.mark.ci
-@looped("seed", range(40, 400))
+@looped("seed", range(40, 400), one_in=180)
 def test_more_sound_programs_that_turn_first_are_told_nothing(seed: int) -> None:
     assert report_words(drawn(seed)) == []
 

@@ -90,6 +90,7 @@ OF_SYSTEM_A = ("step of the depth", "G50")
 @looped(
     ("control", "name"),
     [pair for pair in itertools.product(CONTROLS, UNKNOWN) if pair[0] != "mazak-eia" or pair[1] not in OF_SYSTEM_A],
+    one_in=5,
 )
 def test_a_check_never_passes_and_says_which_variable(control: str, name: str) -> None:
     report = report_of(hexagon_of(control, UNKNOWN[name]), control, CUTTER)
@@ -137,7 +138,7 @@ OPTIONS = ("--machine", "fanuc-30i", "--tool", CUTTER, "--no-config")
 
 
 @pytest.mark.ci
-@looped("name", UNKNOWN)
+@looped("name", UNKNOWN, one_in=4)
 def test_no_comparison_says_the_same_metal(name: str, tmp_path: Path) -> None:
     program = hexagon(UNKNOWN[name])
     old = write(tmp_path, "old", program)

@@ -55,7 +55,7 @@ def test_one_finding_names_the_machine(name: str, program: str, rule: str) -> No
 
 
 @pytest.mark.ci
-@looped(("name", "program"), [(name, program) for name, program, _ in PROGRAMS])
+@looped(("name", "program"), [(name, program) for name, program, _ in PROGRAMS], one_in=4)
 def test_a_new_job_names_the_same_machine(tmp_path: Path, name: str, program: str) -> None:
     path = tmp_path / "a.nc"
     path.write_text(program)
@@ -63,6 +63,7 @@ def test_a_new_job_names_the_same_machine(tmp_path: Path, name: str, program: st
     assert (found.polar, found.machine) == ([str(path)], name)
 
 
+@pytest.mark.ci
 @looped(("name", "program", "rule"), PROGRAMS)
 def test_a_lathe_that_is_chosen_is_checked_as_such(name: str, program: str, rule: str) -> None:
     of_own, of_default = report_of(program, name), report_of(program, job={"machine": "fanuc"})

@@ -70,7 +70,7 @@ def assert_words(blocks: tuple[str, ...], name: str, target: str, texts: str) ->
 
 
 @pytest.mark.ci
-@pytest.mark.one_in(9)
+@pytest.mark.one_in(18)
 @pytest.mark.parametrize("name", NAMES)
 def test_each_word_of_a_section_is_in_the_result(name: str) -> None:
     written_for = 0
@@ -91,7 +91,7 @@ def test_each_word_of_a_section_is_in_the_result(name: str) -> None:
 
 
 @pytest.mark.ci
-@pytest.mark.one_in(9)
+@pytest.mark.one_in(18)
 @pytest.mark.parametrize("name", NAMES)
 def test_what_a_macro_or_the_machine_takes_moves_nothing(name: str) -> None:
     behind = (*(block for block, _ in WHOLE), *BEHIND)
