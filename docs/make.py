@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from generators import controls, machine_pages, one_block, report_fields, rule_pages, values
+from generators import controls, machine_pages, one_block, report_fields, rule_pages, values, written_sections
 
 from polarcheck.program.reading import files
 from polarcheck.rules.rule import load_all
@@ -24,6 +24,7 @@ def pages() -> dict[str, str]:
     rules = load_all()
     return {
         "controls.md": controls.text(),
+        "convert.md": written_sections.page(),
         "one_block.md": one_block.page(),
         "values.md": values.text(rules),
         "report_fields.md": report_fields.text(),
