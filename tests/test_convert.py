@@ -427,6 +427,18 @@ def test_distances_become_coordinates() -> None:
     assert "G101 X20. Y5. F200\nZ-1.\nG103 X15. Y10. L5.\nG101 X30. Y0\n" in text
 
 
+@looped(
+    ("blocks", "expected"),
+    [
+        ("G28 U0\nG28 W0\nT0303", ["G91 G28 X0", "G91 G28 Z0", "G90", "T0303"]),
+        ("G28 U0\nM9\nG28 W0\nT0303", ["G91 G28 X0", "G90", "M9", "G91 G28 Z0", "G90", "T0303"]),
+    ],
+)
+def test_coordinates_are_in_force_again_behind_the_last_of_several_distances(blocks: str, expected: list[str]) -> None:
+    text = convert(f"%\nO1\nG21 G98 G40\n{blocks}\nM30\n%\n", "fanuc", "siemens-iso").data.decode()
+    assert "\n".join(expected) in text
+
+
 def test_a_plane_that_lies_otherwise_is_turned() -> None:
     """C90 at G12.1 is the plane turned by 90 deg; TRANSMIT lays it at C0, and C turns back."""
     outcome = convert(section("G1 X40. C5. F200", c="C90."), SOURCE, "siemens-transmit")

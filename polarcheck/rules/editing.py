@@ -47,6 +47,11 @@ def is_head(run: Run, index: int) -> bool:
     return chr(int(run.words.address[index])) in "NO/"
 
 
+def words_behind_head(run: Run, row: int) -> list[int]:
+    """The executed words of a row without those at its head, in the order in which they are written."""
+    return [index for index in words_of(run, row) if not is_head(run, index)]
+
+
 def begins_program(run: Run, row: int) -> bool:
     """A row with an O word: nothing can be put before its block."""
     return any(chr(int(run.words.address[index])) == "O" for index in words_of(run, row))

@@ -10,15 +10,15 @@ import numpy as np
 
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Mask
-from polarcheck.foundation.states import STATES, Units
+from polarcheck.foundation.states import STATES
 from polarcheck.rewrite.compare.compared_sections import NOWHERE
 from polarcheck.rewrite.compensate.pieces import Piece
 from polarcheck.rewrite.compensate.section_moves import consecutive
 from polarcheck.rewrite.writing.new_blocks import NewBlock, next_move_in_motion
 from polarcheck.rewrite.writing.outcome import refused_at
-from polarcheck.rewrite.writing.pen import MOTION_CODES, Pen
+from polarcheck.rewrite.writing.pen import MOTION_CODES, Pen, pen_at
 from polarcheck.rewrite.writing.style import Style
-from polarcheck.rules.editing import is_head, is_plain, words_of, written_word
+from polarcheck.rules.editing import is_plain, words_behind_head, words_of, written_word
 
 #: Modal groups whose codes are written with the new moves.
 _GROUPS = ("motion", "side", "distance")
@@ -72,15 +72,14 @@ class _Writer:
         self.runs_again = np.bincount(block)[block] > 1
         #: The last row of the previous group, and the code of its last move.
         self.last, self.motion = -1, ""
-        self.pens = {
-            units: Pen(trace.machine, style, units == Units.INCH)
-            for units in np.unique(trace.lengths.units[trace.mode.section >= 0]).tolist()
-        }
+        #: The pens of sections by the units of their lengths.
+        self.pens: dict[int, Pen] = {}
 
     def write(self, group: Sequence[int], strokes: Strokes) -> None:
         """Write consecutive rows."""
         trace, first, last = self.trace, group[0], group[-1]
-        pen = self.pens[int(trace.lengths.units[first])]
+        units = int(trace.lengths.units[first])
+        pen = self.pens.setdefault(units, pen_at(trace, first, self.style))
         start = next((stroke.piece.start for row in group for stroke in strokes[row]), complex(trace.path.start[first]))
         motion = self._motion_before(first)
         point, z = start + complex(trace.path.center_shift[first]), float(trace.path.z_before[first])
@@ -148,11 +147,9 @@ class _Writer:
         run = self.trace.run
         front: list[str] = []
         back: list[str] = []
-        for index in words_of(run, row):
-            word = written_word(run, index)
-            if self.is_said[index] or is_head(run, index):
-                continue
-            (front if chr(int(run.words.address[index])) == "G" else back).append(word)
+        for index in words_behind_head(run, row):
+            if not self.is_said[index]:
+                (front if chr(int(run.words.address[index])) == "G" else back).append(written_word(run, index))
         if not front and not back:
             return moves
         first = moves[0].words if moves else ()
@@ -170,8 +167,7 @@ class _Writer:
         trace, following = self.trace, next_move_in_motion(self.trace, row)
         motion = "" if following is None else MOTION_CODES.get(int(trace.axes.motion[following]), "")
         if following is not None and motion and motion != code:
-            indices = [index for index in words_of(trace.run, following) if not is_head(trace.run, index)]
-            words = [written_word(trace.run, index) for index in indices]
+            words = [written_word(trace.run, index) for index in words_behind_head(trace.run, following)]
             self._put(following, [NewBlock((pen.numbers.code(motion), *words))])
 
     def require_once(self, rows: Sequence[int]) -> None:

@@ -127,7 +127,7 @@ class _Writer:
         row = int(rows[0])
         content = self.texts.content(block)
         self._reported = False
-        if self.texts.has_program_number(block):
+        if block in self.texts.with_program_number:
             if self.translation.measures.words_of(row):
                 raise refused_at(self.trace, row, "words stand beside O: put them into a block of their own")
             self._program(block)
@@ -142,7 +142,7 @@ class _Writer:
 
     def _program(self, block: int) -> None:
         """A block with a program number, which stays or is written by Heads."""
-        if self._resigns and self.texts.has_comment(block) and writes_numbers(self.target):
+        if self._resigns and block in self.texts.with_comment and writes_numbers(self.target):
             self.new.blocks[block] = [NewBlock()]
 
     def _same_each_time(self, rows: Rows) -> Translated:
@@ -194,13 +194,24 @@ class _Writer:
         if result.whole:
             self.new.blocks[block] = [NewBlock((), comment)]
             return
-        if not (result.changed or comment or (self._resigns and self.texts.has_comment(block))):
+        if not (result.changed or comment or (self._resigns and block in self.texts.with_comment)):
             return
         new = [NewBlock(tuple(result.words), comment)]
+        if result.behind:
+            before = [] if self._taken[block - 1] else self.new.blocks.get(block - 1, [])
+            if len(before) > 1 and before[-1].words == tuple(result.behind) and self._leads_on(block - 1):
+                # Of blocks of distances one behind the other the last alone has G90 behind it.
+                before.pop()
         if result.behind and not self._says_absolute(block):
             new.append(NewBlock(tuple(result.behind)))
-        stays = new[0].words or comment or self.texts.has_comment(block)
+        stays = new[0].words or comment or block in self.texts.with_comment
         self.new.blocks[block] = new if stays else new[1:]
+
+    def _leads_on(self, block: int) -> bool:
+        """Whenever a block runs, the next one runs behind it, in the same program."""
+        rows, run = self._rows(block), self.trace.run
+        behind = np.minimum(rows + 1, len(run.block) - 1)
+        return bool(((run.block[behind] == block + 1) & (run.depth[behind] == run.depth[rows])).all())
 
     def _says_absolute(self, block: int) -> bool:
         """The next block begins with G90 itself."""
@@ -214,10 +225,10 @@ class _Writer:
         if self.texts.is_mark(block):
             return
         if not content:
-            if self._resigns and self.texts.has_comment(block):
+            if self._resigns and block in self.texts.with_comment:
                 self.new.blocks[block] = [NewBlock()]
             return
-        if not self.texts.is_statement(block):
+        if not self.trace.text.blocks.is_macro[block]:
             if not self.texts.is_text(block):
                 self._never_run(block, line, content)
             return

@@ -9,6 +9,7 @@ import numpy as np
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import stretch
 from polarcheck.program.execution.run import begins_program
+from polarcheck.rewrite.writing.new_blocks import without_comments
 from polarcheck.rules.editing import line_end
 
 _LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz"
@@ -16,19 +17,18 @@ _HEAD = re.compile(r"\s*(?:/\d?\s*)?(?:N\s*\d+\s*)?", re.IGNORECASE)
 
 
 class BlockTexts:
-    """The text of the blocks of a program."""
+    """
+    The text of the blocks of a program.
+
+    with_comment: blocks with a comment. with_program_number: blocks that begin a program with O and its number.
+    """
 
     def __init__(self, trace: Trace) -> None:
         self.trace, self.text = trace, trace.text
-        self._comments: dict[int, list[tuple[int, int]]] = {}
         self._contents: dict[int, str] = {}
-        comments = self.text.comments
-        for block, start, end in zip(
-            comments.block.tolist(), comments.start.tolist(), comments.end.tolist(), strict=True
-        ):
-            self._comments.setdefault(block, []).append((start, end))
+        self.with_comment = set(self.text.comments.block.tolist())
         words = self.text.words
-        self._numbered = set(words.block[begins_program(words)].tolist())
+        self.with_program_number = set(words.block[begins_program(words)].tolist())
         names = self.text.names
         self._named = set(names.block.tolist())
         self._words = set(words.block.tolist())
@@ -41,18 +41,6 @@ class BlockTexts:
     def line(self, block: int) -> int:
         """The line of a block in the original, from 1."""
         return int(self.text.blocks.line[block])
-
-    def has_comment(self, block: int) -> bool:
-        """The block has a comment."""
-        return block in self._comments
-
-    def has_program_number(self, block: int) -> bool:
-        """The block begins a program with O and its number."""
-        return block in self._numbered
-
-    def is_statement(self, block: int) -> bool:
-        """The block is a statement of a macro, or of the language of the control."""
-        return bool(self.text.blocks.is_macro[block])
 
     def is_mark(self, block: int) -> bool:
         """The block is % at the head or end of a file, or the name of its program."""
@@ -68,11 +56,6 @@ class BlockTexts:
         hits = blocks[(values == number) & (blocks > after)]
         return int(hits[0]) if len(hits) else None
 
-    def comments(self, block: int) -> list[str]:
-        """The comments of a block, without the signs around them."""
-        texts = [self.text.source.excerpt(*span) for span in self._comments.get(block, [])]
-        return [text[1:-1] if text.startswith("(") and text.endswith(")") else text[1:].strip() for text in texts]
-
     def line_end(self, block: int) -> str:
         """The line end behind the line of a block."""
         return line_end(self.text.source, self.line(block))
@@ -80,8 +63,7 @@ class BlockTexts:
     def content(self, block: int) -> str:
         """The words of a block as they are written, without N, block skip and comments."""
         if block not in self._contents:
-            kept = self._without_comments(block, [])
-            self._contents[block] = " ".join(_HEAD.sub("", kept, count=1).split())
+            self._contents[block] = _behind_head(without_comments(self.text, block))
         return self._contents[block]
 
     def rest(self, block: int, row: int) -> str:
@@ -92,21 +74,12 @@ class BlockTexts:
             (self._with_name(block, int(run.words.start[index])), int(run.words.end[index]))
             for index in range(low, high)
         ]
-        return " ".join(_HEAD.sub("", self._without_comments(block, spans), count=1).split())
+        return _behind_head(without_comments(self.text, block, spans))
 
     def _with_name(self, block: int, start: int) -> int:
         """Where a word begins, with the letters of its address, of which CR=5 has the last alone."""
         before = self.text.source.excerpt(int(self.text.blocks.start[block]), start)
         return start - len(before) + len(before.rstrip(_LETTERS)) if before[-1:].isalpha() else start
-
-    def _without_comments(self, block: int, spans: list[tuple[int, int]]) -> str:
-        offset, end = int(self.text.blocks.start[block]), int(self.text.blocks.end[block])
-        pieces = []
-        for first, last in sorted([*self._comments.get(block, []), *spans]):
-            pieces.append(self.text.source.excerpt(offset, first) if first > offset else "")
-            offset = max(offset, last)
-        pieces.append(self.text.source.excerpt(offset, end) if end > offset else "")
-        return " ".join(pieces)
 
     # ---- head and end ----
 
@@ -119,7 +92,7 @@ class BlockTexts:
     def first_block(self, row: int) -> int | None:
         """The first block with words of a program that begins with a row, behind its number; None if there is none."""
         for block in range(int(self.trace.run.block[row]), len(self.text.blocks)):
-            if block not in self._numbered and block in self._words:
+            if block not in self.with_program_number and block in self._words:
                 return block
         return None
 
@@ -127,6 +100,6 @@ class BlockTexts:
         """The blocks with % at the head or end of a file, or with the name of a program in the form of a control."""
         return sorted(self._marks | {block for block in self._named if block not in self._words})
 
-    def numbered(self) -> list[int]:
-        """The blocks with O and a program number."""
-        return sorted(self._numbered)
+
+def _behind_head(content: str) -> str:
+    return " ".join(_HEAD.sub("", content, count=1).split())

@@ -16,7 +16,12 @@ _LAST_DIGITS = 10_000
 
 
 class Calls:
-    """The calls and returns of a program as those of another machine."""
+    """
+    The calls and returns of a program as those of another machine.
+
+    is_flow: a boolean per row: it calls a program or returns from one. calls_foreign_macro: a boolean per row: it calls
+    a macro that is not in the file, such as one of the builder.
+    """
 
     def __init__(self, trace: Trace, target: Machine) -> None:
         self.trace, self.source, self.target = trace, trace.machine, target
@@ -39,17 +44,9 @@ class Calls:
         }
         #: Programs that are called and not in the file -> the first line with a call.
         self.missing: dict[int, int] = {}
-        self._flow = trace.blocks.codes(*self.source.macro.flow_codes)
+        self.is_flow = trace.blocks.codes(*self.source.macro.flow_codes)
         enters = np.append(np.diff(trace.run.depth) > 0, False)[: len(trace)]
-        self._calls_foreign_macro = trace.blocks.codes(*self.source.macro.macro_calls) & ~enters
-
-    def is_flow(self, row: int) -> bool:
-        """A row calls a program or returns from one."""
-        return bool(self._flow[row])
-
-    def calls_foreign_macro(self, row: int) -> bool:
-        """A row calls a macro that is not in the file, such as one of the builder."""
-        return bool(self._calls_foreign_macro[row])
+        self.calls_foreign_macro = trace.blocks.codes(*self.source.macro.macro_calls) & ~enters
 
     def names(self, text: str) -> bool:
         """The text of a block is a call or a return in the words of the profile, in whatever language."""
@@ -62,7 +59,7 @@ class Calls:
 
         text: of the block, without N word and comments. Raises RefusedError where the other machine has no words.
         """
-        if self.calls_foreign_macro(row) or (not self.names(text) and not self.is_flow(row)):
+        if self.calls_foreign_macro[row] or (not self.names(text) and not self.is_flow[row]):
             return None
         squeezed = _BLANKS.sub("", text).upper()
         line = int(self.trace.blocks.line_in_file[row])

@@ -65,7 +65,7 @@ class CodeWords:
     def of_m(self, row: int, index: int) -> Meaning:
         """What an M code of a row is there."""
         number = self.measures.code_of(index)
-        if self._calls.is_flow(row):
+        if self._calls.is_flow[row]:
             return Meaning((self.measures.written(index),))
         if number in self._left_out:
             return Meaning(note=f"T alone calls the tool on {self.target.title}")

@@ -107,7 +107,7 @@ class _Writer:
         first, until = np.searchsorted(self.trace.run.row, (enter, leave + 1))
         rows: list[int] = np.unique(self.trace.run.row[first:until]).tolist()
         # The head of a subprogram is written with those of all programs.
-        return [row for row in rows if not self.texts.has_program_number(int(self.trace.run.block[row]))]
+        return [row for row in rows if int(self.trace.run.block[row]) not in self.texts.with_program_number]
 
     def _targets(self, rows: Sequence[int]) -> set[int]:
         """
@@ -130,7 +130,7 @@ class _Writer:
         geometry, remaining = self.words.divided(row, self.translation.measures.words_of(row), row in (enter, leave))
         translated = self._translated(row, remaining)
         words, comment = translated.words, self._comment(row, translated)
-        front = [word for word in words if word[:1].upper() == "G" and not self.words.is_dwell(row)]
+        front = [word for word in words if word[:1].upper() == "G" and not self.words.is_dwell[row]]
         back = [word for word in words if word not in front]
         if row == enter:
             return _without_empty(*self.ends.switched_on(row, pen, turn, front), NewBlock(tuple(back), comment))

@@ -12,7 +12,7 @@ from polarcheck.program.machines.machine import Machine
 from polarcheck.program.machines.own_language import shown
 from polarcheck.rewrite.convert.block_texts import BlockTexts
 from polarcheck.rewrite.convert.measures import Measures
-from polarcheck.rewrite.writing.new_blocks import NewBlock, comment_text
+from polarcheck.rewrite.writing.new_blocks import NewBlock, comment_text, comments_of
 from polarcheck.rewrite.writing.outcome import Decision
 from polarcheck.rules.editing import Replace, content_of, line_without
 
@@ -50,7 +50,7 @@ class Heads:
 
     def _numbers_to_names(self) -> None:
         """O and a number of each program: comments, or the heads of an archive where there are several programs."""
-        blocks = self.texts.numbered()
+        blocks = sorted(self.texts.with_program_number)
         for index, block in enumerate(blocks):
             content = self.texts.content(block)
             number = _NUMBER.search(content)
@@ -62,7 +62,7 @@ class Heads:
                 self._replace(block, comment_text(content, self.target) + self._comments(block))
 
     def _comments(self, block: int) -> str:
-        return "".join(f" {comment_text(comment, self.target)}" for comment in self.texts.comments(block))
+        return "".join(f" {comment_text(comment, self.target)}" for comment in comments_of(self.trace.text, block))
 
     def _marks(self) -> None:
         """% and names such as %_N_SHAFT_MPF."""

@@ -9,7 +9,6 @@ import numpy as np
 
 from polarcheck.columns.path.lengths import RADIUS_FACTOR
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import stretch
 from polarcheck.foundation.states import Distance, Units
 from polarcheck.program.machines.axis_table import INCREMENTS
 from polarcheck.program.machines.code_tables import code_numbers
@@ -18,6 +17,7 @@ from polarcheck.rewrite.convert.doubtful_values import Basis
 from polarcheck.rewrite.convert.number_text import number_of, rescaled, rounded
 from polarcheck.rewrite.writing.outcome import refused_at
 from polarcheck.rewrite.writing.unknown_moves import UnknownMoves
+from polarcheck.rules.editing import words_behind_head
 
 _MM_PER_INCH = Fraction(254, 10)
 #: To which F in other units is rounded.
@@ -100,10 +100,7 @@ class Measures:
 
     def words_of(self, row: int) -> list[int]:
         """The executed words of a row without N, O and block skip, in the order in which they are written."""
-        low, high = stretch(self.trace.run.row, row, row + 1)
-        words = self.trace.run.words
-        written = zip(words.start[low:high].tolist(), range(low, high), words.address[low:high].tolist(), strict=True)
-        return [index for _, index, address in sorted(written) if address not in b"NO/"]
+        return words_behind_head(self.trace.run, row)
 
     def letter_of(self, index: int) -> str:
         """The letter of an executed word; empty for a name."""

@@ -26,7 +26,7 @@ _OF_WRITING = ("before", "switch", "behind", "end", "behind_end", "rapid_in_mode
 
 
 class SectionWords:
-    """The words of polar sections."""
+    """The words of polar sections. is_dwell: a boolean per row: its words count time."""
 
     def __init__(self, trace: Trace, target: Machine) -> None:
         self.trace, self.target = trace, target
@@ -44,7 +44,7 @@ class SectionWords:
         self._code: list[int] = code_numbers(words.value).tolist()
         self._address: list[int] = words.address.tolist()
         self._keys: dict[int, str] = {}
-        self._dwells = trace.blocks.listed("dwell")
+        self.is_dwell = trace.blocks.listed("dwell")
         self._has_arguments = ~trace.modal.uses_axes | trace.blocks.codes(*trace.machine.macro.flow_codes)
         self._switch_codes = {*numbers(polar.on), *numbers(polar.off), *numbers(polar.ended_by)}
 
@@ -64,10 +64,6 @@ class SectionWords:
         same_units = source.control.units == target.control.units
         return same_keys and same_codes and same_corner and takes_arcs and same_units
 
-    def is_dwell(self, row: int) -> bool:
-        """The block is a dwell, whose words count time."""
-        return bool(self._dwells[row])
-
     def key(self, index: int) -> str:
         """The list of codes that a word stands in; empty for a word that is no G code."""
         if self._address[index] != ord("G"):
@@ -83,7 +79,7 @@ class SectionWords:
 
         is_switch: the row switches the mode on or off; what stands there for the switch is of the first kind.
         """
-        if self.is_dwell(row):
+        if self.is_dwell[row]:
             return [], list(words)
         if not is_switch and self._has_arguments[row]:
             # R of G10 P3 R4. is no radius.

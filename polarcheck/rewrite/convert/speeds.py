@@ -28,7 +28,7 @@ class SpeedWords:
         self._named = {self.source.address_number(word): role for word, role in words.items()}
 
     @cached_property
-    def _is_speed(self) -> Mask:
+    def is_speed(self) -> Mask:
         """Per executed word: it names a spindle speed."""
         words, run = self.trace.run.words, self.trace.run
         is_speed = np.isin(words.address, [ord("S"), *self._named])
@@ -36,10 +36,6 @@ class SpeedWords:
             starts = self.trace.blocks.codes(*self.source.m_codes.live_tool_on)
             is_speed |= (words.address == ord("P")) & starts[run.row]
         return np.asarray(is_speed)
-
-    def is_speed(self, index: int) -> bool:
-        """Return True for a word that names a spindle speed."""
-        return bool(self._is_speed[index])
 
     def is_surface_speed(self, row: int) -> bool:
         """S of a row is a cutting speed [m/min or ft/min], by G96, and not the limit beside G50."""
@@ -61,7 +57,7 @@ class SpeedWords:
         Raises RefusedError where that speed is not known.
         """
         ours, theirs = (machine.writing.live_tool_speed or "S" for machine in (self.source, self.target))
-        if ours == theirs or self._is_speed[slice(*stretch(self.trace.run.row, row, row + 1))].any():
+        if ours == theirs or self.is_speed[slice(*stretch(self.trace.run.row, row, row + 1))].any():
             return ""
         speed = self._last(row, is_live and ours != "S")
         if math.isnan(speed):
@@ -80,7 +76,7 @@ class SpeedWords:
         run = self.trace.run
         is_s = run.words.address == ord("S")
         is_limit = self.trace.blocks.listed("coordinate_setting")[run.row]
-        by_s, by_address = (np.flatnonzero(self._is_speed & ~is_limit & mask) for mask in (is_s, ~is_s))
+        by_s, by_address = (np.flatnonzero(self.is_speed & ~is_limit & mask) for mask in (is_s, ~is_s))
         return (by_s, run.row[by_s]), (by_address, run.row[by_address])
 
     def written(self, row: int, index: int) -> str:

@@ -35,6 +35,7 @@ class ToolWords:
     The calls of tools of a program as those of another machine.
 
     keys: offset of the job by the key of the other machine -> its key in the job of the program.
+    is_same: T and D words mean the same on both machines.
     """
 
     def __init__(self, trace: Trace, target: Machine) -> None:
@@ -48,17 +49,12 @@ class ToolWords:
         self._number_by_name = dict(zip((tool for tool in used if tool in trace.run.names), free, strict=False))
         self._compensated = {self._number(tool) for tool in np.unique(trace.tools.tool[side != Side.OFF]).tolist()}
         ours, theirs = self.source, target
-        self._is_same = (
+        self.is_same = (
             ours.offsets.called_by == theirs.offsets.called_by
             and ours.control.offset_digits == theirs.control.offset_digits
             and ours.control.radius_offset_digits == theirs.control.radius_offset_digits
             and ours.has_edges == theirs.has_edges
         )
-
-    @property
-    def is_same(self) -> bool:
-        """T and D words mean the same on both machines."""
-        return self._is_same
 
     def call(self, row: int) -> ToolCall:
         """The words that call in their place what a row calls; for a tool with a name those of a free number."""

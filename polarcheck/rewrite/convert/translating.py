@@ -87,7 +87,7 @@ class Translation:
         index = int(self._unknown_moves.word[row])
         if self.is_same_lathe:
             return ""
-        if index < 0 and self.calls.calls_foreign_macro(row):
+        if index < 0 and self.calls.calls_foreign_macro[row]:
             return f"the macro is not in the file: see whether {self.target.title} has it, and convert it, too"
         if index < 0:
             return self._of_lathe.why_not(row)
@@ -185,7 +185,7 @@ class Translation:
             self._code_word(row, index, result)
         elif letter == "T" or (letter == "D" and bool(self.trace.tools.has_edges[row])):
             self._tool(row, index, result)
-        elif self._speeds.is_speed(index):
+        elif self._speeds.is_speed[index]:
             word = self._speeds.written(row, index)
             no_word = f"{written}: the profile of {self.target.title} has no word for it"
             (result.words if word else result.decisions).append(word or no_word)

@@ -9,7 +9,7 @@ import numpy as np
 
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import stretch
-from polarcheck.foundation.states import FEED_MODES, MM_PER_INCH, STATES, FeedMode, Motion, Units
+from polarcheck.foundation.states import FEED_MODES, MM_PER_INCH, STATES, FeedMode, Motion
 from polarcheck.program.machines.code_tables import code_set
 from polarcheck.rewrite.roll.entries import Entry
 from polarcheck.rewrite.roll.following import Following, x_factor
@@ -18,7 +18,7 @@ from polarcheck.rewrite.roll.rolled_elements import Element
 from polarcheck.rewrite.roll.ways import AxisMoves
 from polarcheck.rewrite.writing.new_blocks import NewBlock
 from polarcheck.rewrite.writing.outcome import Refusal, RefusedError
-from polarcheck.rewrite.writing.pen import Pen
+from polarcheck.rewrite.writing.pen import Pen, pen_at
 from polarcheck.rewrite.writing.style import Style
 from polarcheck.rules.editing import is_plain
 
@@ -40,16 +40,16 @@ def restored(trace: Trace, following: Following, last: int, pen: Pen, *, is_line
     if mode != FeedMode.PER_MINUTE and following.takes_over(last, following.at_feed, following.feed_mode):
         words.append(feed_code(pen, mode))
     if takes_motion or not writes_x:
-        words.append(in_case(pen, pen.numbers.code("G1")))
+        words.append(pen.numbers.code("G1"))
     if not writes_x:
         count = pen.numbers.increments(float(trace.path.x[last]) / x_factor(trace, last))
-        words.append(in_case(pen, pen.numbers.word("X", count)))
+        words.append(pen.numbers.word("X", count))
     is_time = mode == FeedMode.INVERSE_TIME
     if following.takes_over(last, following.at_feed, following.feed) or (is_time and not writes_x):
         feed = float(trace.feedrate.written_feed[last])
         if is_time:  # a number, and no length
             feed = feed / float(trace.lengths.feed_scale[last]) * (MM_PER_INCH if pen.numbers.feed_inch else 1.0)
-        words.append(in_case(pen, "F" + pen.numbers.feed(feed)))
+        words.append("F" + pen.numbers.feed(feed))
     return [NewBlock(tuple(words))] if words else []
 
 
@@ -58,12 +58,7 @@ def feed_code(pen: Pen, mode: FeedMode) -> str:
     codes = pen.machine.codes(FEED_MODES[mode])
     if not codes:
         raise RefusedError([Refusal(pen.numbers.line, f"no code for that F is known: {pen.machine.title}")])
-    return in_case(pen, pen.numbers.code(codes[0]))
-
-
-def in_case(pen: Pen, word: str) -> str:
-    """A word in the letters of the program."""
-    return word.lower() if pen.style.lower_case else word
+    return pen.numbers.code(codes[0])
 
 
 def _plane(trace: Trace, following: Following, last: int, pen: Pen) -> list[str]:
@@ -77,7 +72,7 @@ def _plane(trace: Trace, following: Following, last: int, pen: Pen) -> list[str]
     before = planes.get(f"G{state}", "plane_zx")
     if not after or after[-1] == before or not following.takes_over(last, following.arcs, following.plane):
         return []
-    return [in_case(pen, pen.numbers.code(machine.codes(before)[0]))]
+    return [pen.numbers.code(machine.codes(before)[0])]
 
 
 #: F of the turn back is so much of what C allows.
@@ -104,7 +99,7 @@ class Writer:
         following: Following,
     ) -> None:
         self.trace, self.each, self.way, self.entry, self.following = trace, candidate, moves, entry, following
-        self.pen = _pen(trace, candidate, style)
+        self.pen = pen_at(trace, candidate.first, style)
         run = trace.run
         self.first = _with_feed_mode(trace, candidate.first) if entry is None else entry.behind + 1
         words = slice(*stretch(run.row, self.first, candidate.last + 1))
@@ -145,7 +140,7 @@ class Writer:
                 blocks = pen.arc(end, element.center / self._turn, element.kind == Motion.CCW, element.z, feed)
             self._blocks_of(row).extend(blocks)
         last = self._blocks_of(candidate.last)
-        last += self._in_case([block for block in pen.leave() if self._makes_of_x(block) in (None, self._is_radius)])
+        last += [block for block in pen.leave() if self._makes_of_x(block) in (None, self._is_radius)]
         is_line = elements[-1].kind in (Motion.LINE, Motion.NONE) and not trace.machine.control.motion_codes
         last += restored(trace, self.following, candidate.last, pen, is_line=is_line)
 
@@ -166,10 +161,9 @@ class Writer:
         trace, pen = self.trace, self.pen
         axis, angle = trace.machine.polar.rotary_address, pen.numbers.angle(entry.turns)
         if entry.c_word >= 0:
-            self.positions = in_case(pen, axis + angle)
+            self.positions = (axis + angle).lower() if pen.style.lower_case else axis + angle
         else:
-            words = pen.numbers.code("G0"), axis + "=" * (len(axis) > 1) + angle
-            self.inserted += self._in_case([NewBlock(words)])
+            self.inserted.append(NewBlock((pen.numbers.code("G0"), axis + "=" * (len(axis) > 1) + angle)))
         radius = float(trace.path.x_before[entry.first])
         self.inserted += self._per_minute(entry.behind + 1)
         self.inserted += self._switched_on(complex(radius), float(trace.path.z_before[entry.first]))
@@ -196,7 +190,7 @@ class Writer:
     def _switched_on(self, point: complex, z: float, direction: float = 0.0) -> list[NewBlock]:
         """The blocks that switch the mode on, without one that makes of X what it is already."""
         blocks = self.pen.enter(point, z, direction)
-        return self._in_case([block for block in blocks if self._makes_of_x(block) != self._is_radius])
+        return [block for block in blocks if self._makes_of_x(block) != self._is_radius]
 
     @property
     def _is_radius(self) -> bool:
@@ -207,16 +201,6 @@ class Writer:
         control, text = self.trace.machine.control, " ".join(block.words)
         code = control.native_words.get(text, text)
         return True if code in control.x_radius_words else False if code in control.x_diameter_words else None
-
-    def _in_case(self, blocks: Sequence[NewBlock]) -> list[NewBlock]:
-        return [NewBlock(tuple(in_case(self.pen, word) for word in block.words)) for block in blocks]
-
-
-def _pen(trace: Trace, candidate: Stretch, style: Style) -> Pen:
-    units = trace.lengths.units, trace.lengths.feed_units
-    pen = Pen(trace.machine, style, *(bool(column[candidate.first] == Units.INCH) for column in units))
-    pen.numbers.line = candidate.line
-    return pen
 
 
 def _with_feed_mode(trace: Trace, row: int) -> int:

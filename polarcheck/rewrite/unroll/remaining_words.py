@@ -11,7 +11,7 @@ from polarcheck.foundation.arrays import stretch
 from polarcheck.foundation.states import MOVES, NO_MOVE, STATES
 from polarcheck.program.machines.code_tables import NO_CODE, code_set
 from polarcheck.rewrite.writing.outcome import refused_at
-from polarcheck.rules.editing import is_head, is_plain, words_of, written_word
+from polarcheck.rules.editing import is_plain, words_behind_head, written_word
 
 _GROUPS = ("plane", "side", "corner", "feed_mode", "feed_axes", "arc_feed", "distance")
 #: Lists of G codes to drop: they mean nothing without the mode, or the new blocks write their own.
@@ -67,7 +67,7 @@ class RemainingWords:
         """
         run = self.trace.run
         plain, hands_over = is_plain(run, row), self._hands_over[row]
-        words = [index for index in words_of(run, row) if not is_head(run, index)]
+        words = words_behind_head(run, row)
         if self._untouched[row]:
             if words and not plain:
                 raise refused_at(self.trace, row, _COMPUTED)

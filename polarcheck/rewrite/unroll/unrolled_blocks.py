@@ -155,8 +155,7 @@ class Writer:
         return [self._block(words)] if words else []
 
     def _block(self, words: Sequence[str], remaining: Sequence[str] = ()) -> NewBlock:
-        written = (word.lower() if self.style.lower_case else word for word in words if word)
-        return NewBlock((*written, *remaining))
+        return NewBlock((*filter(None, words), *remaining))
 
     # ---- words ----
 

@@ -118,7 +118,27 @@ def edits_of_ranges(
 
 def comments_of(text: Text, index: int) -> list[str]:
     """The comments of a block without their signs."""
-    return _comments(text, index, text.written(text.blocks, index))[0]
+    comments = []
+    for start, end in _comment_spans(text, index):
+        comment = text.source.excerpt(start, end)
+        is_closed = comment.startswith("(") and comment.endswith(")")
+        is_mark = comment[:1] not in "(;%"  # of a channel
+        comments.append(comment[1:-1] if is_closed else comment if is_mark else comment[1:].strip())
+    return comments
+
+
+def without_comments(text: Text, index: int, further: Sequence[tuple[int, int]] = ()) -> str:
+    """A block with blanks in the places of its comments. further: other spans of the file that become blanks."""
+    offset = int(text.blocks.start[index])
+    content = text.source.excerpt(offset, int(text.blocks.end[index]))
+    for start, end in (*_comment_spans(text, index), *further):
+        content = content[: start - offset] + " " * (end - start) + content[end - offset :]
+    return content
+
+
+def _comment_spans(text: Text, index: int) -> list[tuple[int, int]]:
+    rows = slice(*stretch(text.comments.block, index, index + 1))
+    return list(zip(text.comments.start[rows].tolist(), text.comments.end[rows].tolist(), strict=True))
 
 
 def next_move_in_motion(trace: Trace, row: int) -> int | None:
@@ -235,11 +255,10 @@ def _edit(
     is_without_skip: bool,
 ) -> Replace:
     start = int(text.blocks.start[index])
-    content = text.source.excerpt(start, int(text.blocks.end[index]))
-    comments, bare = _comments(text, index, content)
+    content = text.written(text.blocks, index)
     begin, finish = content_of(text, index)
     lead = begin - start
-    head = _HEAD.match(bare, lead)
+    head = _HEAD.match(without_comments(text, index), lead)
     labels = range(*stretch(text.labels.block, index, index + 1))
     head_end = max([head.end() if head else lead, *(int(text.labels.end[label]) - start for label in labels)])
     kept = content[lead:head_end].strip()
@@ -247,7 +266,7 @@ def _edit(
         kept = _SKIP.sub("", kept).strip()
     number = _NUMBER.search(kept)
     written = [block_text(block, style, machine) for block in blocks]
-    remarks = "".join(f" {comment_text(comment, machine)}" for comment in comments)
+    remarks = "".join(f" {comment_text(comment, machine)}" for comment in comments_of(text, index))
     if not written and not remarks and not (number and sequence.is_reference(int(number[1]))) and not len(labels):
         return line_without(text.source, begin, finish)
     skip = _SKIP.search(kept)
@@ -260,20 +279,6 @@ def _edit(
 
 def _joined(head: str, line: str, style: Style) -> str:
     return f"{head}{style.blank}{line}" if head and line else head + line
-
-
-def _comments(text: Text, index: int, content: str) -> tuple[list[str], str]:
-    """The comments in a block without their signs, and the block with blanks in their places."""
-    start = int(text.blocks.start[index])
-    comments, bare = [], content
-    for number in range(*stretch(text.comments.block, index, index + 1)):
-        first, last = int(text.comments.start[number]) - start, int(text.comments.end[number]) - start
-        comment = content[first:last]
-        is_closed = comment.startswith("(") and comment.endswith(")")
-        is_mark = comment[:1] not in "(;%"  # of a channel
-        comments.append(comment[1:-1] if is_closed else comment if is_mark else comment[1:].strip())
-        bare = bare[:first] + " " * (last - first) + bare[last:]
-    return comments, bare
 
 
 def _parting(text: Text, index: int, machine: Machine) -> str:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from polarcheck.foundation.states import Motion
+from polarcheck.columns.trace import Trace
+from polarcheck.foundation.states import Motion, Units
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.program.machines.machine import Machine
 from polarcheck.rewrite.writing.arc_words import ArcWords
@@ -29,6 +30,7 @@ class Pen:
 
     machine: that reads them. style: how the program is written. inch: its lengths are in inch. feed_inch: so is F.
     at: the programmed point that the last block leads to, exactly; NaN where it is not known. z: depth [mm], or NaN.
+    feed_word: the F word that was written last; empty before the first.
     numbers: writes numbers; its `line` is the line of the original that refusals name.
     """
 
@@ -53,17 +55,12 @@ class Pen:
         self.factors = (2 if x == "diameter" else 1, 2 if polar.virtual_axis_programming == "diameter" else 1)
         self._written: list[int | None] = [None, None, None]
         self._motion = ""
-        self._feed, self._wanted_feed = "", ""
+        self.feed_word, self._wanted_feed = "", ""
 
     @property
     def written_point(self) -> complex:
         """Where the words that are written lead to: `at`, rounded to the least increment [mm]."""
         return self._point(*self._rounded(self.at))
-
-    @property
-    def feed_word(self) -> str:
-        """The F word that was written last; empty before the first."""
-        return self._feed
 
     def enter(self, point: complex, z: float = math.nan, direction: float = 0.0) -> list[NewBlock]:
         """
@@ -88,7 +85,7 @@ class Pen:
     def forget(self) -> None:
         """Write all words again from here on, as behind blocks that somebody else has written."""
         self._written = [None, None, None]
-        self._motion = self._feed = ""
+        self._motion = self.feed_word = ""
 
     def go_on(self, point: complex, z: float, motion: str = "") -> None:
         """
@@ -175,7 +172,7 @@ class Pen:
         """
         own_feed = next((word for word in words if word.startswith("F")), "")
         if own_feed:
-            self._wanted_feed = self._feed = own_feed
+            self._wanted_feed = self.feed_word = own_feed
         block = self._block(codes, motion, words, feed, bool(own_feed) or motion == "G0")
         self.at, self.z = end, z
         self._written = [None, None, None]
@@ -251,11 +248,11 @@ class Pen:
         if feed is not None:
             self._wanted_feed = "F" + self.numbers.feed(feed)
         text = "" if without_feed else self._wanted_feed
-        has_feed = bool(text) and (text != self._feed or (self.style.repeats_feed and bool(code)))
+        has_feed = bool(text) and (text != self.feed_word or (self.style.repeats_feed and bool(code)))
         if code:
             self._motion = motion
         if text:
-            self._feed = text
+            self.feed_word = text
         all_words = (*codes, *([motion] if motion and not left_out else []), *words, *([text] if has_feed else []))
         return NewBlock(all_words)
 
@@ -277,3 +274,11 @@ class Pen:
 
     def _refusal(self, text: str) -> Refusal:
         return Refusal(self.numbers.line, f"{text}: {self.machine.title}")
+
+
+def pen_at(trace: Trace, row: int, style: Style) -> Pen:
+    """Return a pen for the machine of a program, in the units in force in a row; refusals name its line."""
+    units = trace.lengths.units, trace.lengths.feed_units
+    pen = Pen(trace.machine, style, *(bool(column[row] == Units.INCH) for column in units))
+    pen.numbers.line = int(trace.blocks.line_in_file[row])
+    return pen
