@@ -177,7 +177,7 @@ class Rule(Documented, frozen=True):
     @property
     def of_contours(self) -> bool:
         """True if the rule judges contours as wholes, or the metal that they leave: one point says nothing of them."""
-        return self.subject in ("side", "compensation", "metal", "infeed") or of_contours(self.parameters)
+        return self.subject in ("side", "outline", "compensation", "metal", "infeed") or of_contours(self.parameters)
 
     def level(self, severities: Mapping[str, str]) -> str:
         """Return error, warning, note or off, by the severities that the machine and the job set per rule."""

@@ -45,7 +45,7 @@ _AT_CENTER = 5.0
 
 
 #: Subjects of rules (rules/causes.py) that judge the contour as programmed.
-_OF_CONTOUR = ("arc", "side", "compensation", "metal")
+_OF_CONTOUR = ("arc", "side", "outline", "compensation", "metal")
 
 
 class Wanted(NamedTuple):

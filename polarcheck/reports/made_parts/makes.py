@@ -8,6 +8,7 @@ from itertools import chain
 import msgspec
 
 from polarcheck.foundation.finding import FileReport, Finding
+from polarcheck.rules.causes import BESIDE_PART
 from polarcheck.rules.rule import Rule, load_all
 from polarcheck.rules.tables import Tables
 
@@ -53,4 +54,5 @@ def _is_doubtful(finding: Finding, rules: dict[str, Rule]) -> bool:
     rule = rules[finding.rule]
     if rule.name in _COMPARING:
         return False
-    return bool(rule.doubts) or rule.group not in _GROUPS or rule.name in _DISPLACING
+    is_of_part = any(what not in BESIDE_PART for what, _ in rule.doubts)
+    return is_of_part or rule.group not in _GROUPS or rule.name in _DISPLACING

@@ -21,10 +21,7 @@ if TYPE_CHECKING:
     gouges=True,
     at=("compensation_off",),
     doubts=(("metal", "block"),),
-    follows={
-        "loop": ("inside-arc-smaller-than-radius", "start-up-shorter-than-radius"),
-        "section": ("side-repeated-in-offset-mode",),
-    },
+    follows={"loop": ("inside-arc-smaller-than-radius", "start-up-shorter-than-radius")},
     is_symptom=True,
 )
 def cancel_shorter_than_radius(

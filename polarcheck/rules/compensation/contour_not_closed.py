@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     once="loop",
     subject="compensation",
     doubts=(("metal", "loop"),),
-    follows={"loop": ("number-without-point",), "section": ("polar-switch-not-alone", "contour-open-with-infeed")},
 )
 def contour_not_closed(coverage: Coverage) -> Hits:
     """

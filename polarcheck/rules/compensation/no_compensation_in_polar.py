@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     over="sections",
     at=("on",),
     is_advice=True,
-    follows={"section": ("polar-switched-in-offset-mode",)},
 )
 def no_compensation_in_polar(mode: PolarMode, path: ProgrammedPath, compensation: CutterCompensation) -> Mask:
     """

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     gouges=True,
     at=("compensation_off", "compensation_left", "compensation_right"),
     once="loop",
-    doubts=(("metal", "X before"),),
+    doubts=(("metal", "X before"), ("speed", "block")),
     follows={
         "block": ("path-through-center",),
         "X before": ("uncompensated-cut-into-part", "path-through-center", "c-feed-above-limit"),

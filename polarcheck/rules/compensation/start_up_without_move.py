@@ -18,15 +18,7 @@ if TYPE_CHECKING:
     at=("compensation_left", "compensation_right"),
     is_advice=True,
     subject="",
-    follows={
-        "way": (
-            "start-up-shorter-than-radius",
-            "start-up-on-arc",
-            "start-up-sweeps-contour",
-            "offset-number-missing",
-            "nose-type-not-zero",
-        )
-    },
+    follows={"way": ("start-up-shorter-than-radius", "start-up-sweeps-contour")},
 )
 def start_up_without_move(ramps: Ramps) -> Mask:
     """

@@ -19,13 +19,11 @@ if TYPE_CHECKING:
     once="loop",
     follows={
         "motion": ("rapid-in-polar",),
-        "block": ("lift-missing-between-cuts", "approach-inside-stock"),
         "X before": ("rapid-through-part",),
-        "loop": ("x-not-positive-at-entry",),
-        "section": ("start-up-on-arc", "nearly-regular-contour", "no-offset-intersection", "arc-word-without-arc"),
         "tool call": ("rapid-plunge-into-stock",),
     },
     is_symptom=True,
+    doubts=(("speed", "block"), ("rapid", "block")),
 )
 def uncompensated_cut_into_part(uncompensated_cuts: UncompensatedCuts) -> Hits:
     """

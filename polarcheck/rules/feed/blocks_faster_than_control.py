@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     values=("time", "limit", "highest_feed"),
     worse=("-time",),
     once="section",
-    follows={"section": ("feed-implausible",)},
+    subject="rate",
 )
 def blocks_faster_than_control(feeds: Feeds) -> Hits:
     """

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     worse=("c_acceleration",),
     at=("F",),
     once="feed",
-    follows={"feed": ("c-feed-above-limit",), "block": ("start-up-sweeps-contour",)},
+    subject="rate",
 )
 def c_acceleration_above_limit(feedrate: Feedrate, center: Center, feeds: Feeds) -> Hits:
     """

@@ -24,8 +24,9 @@ if TYPE_CHECKING:
     worse=("c_feed",),
     at=("F",),
     once="feed",
-    follows={"block": ("start-up-sweeps-contour", "uncompensated-cut-into-part")},
     is_symptom=True,
+    subject="speed",
+    doubts=(("rate", "feed"),),
 )
 def c_feed_above_limit(center: Center, tool_center: ToolCenter, machine: Machine) -> Hits:
     """

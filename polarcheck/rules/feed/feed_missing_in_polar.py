@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     "cutting move without F: none is in force{likewise}",
     at=("line", "arc_clockwise", "arc_counterclockwise", "F"),
     once="program",
-    follows={"block": ("vacant-variable",)},
+    subject="word",
 )
 def feed_missing_in_polar(mode: PolarMode, path: ProgrammedPath, feeds: Feeds) -> Mask:
     """

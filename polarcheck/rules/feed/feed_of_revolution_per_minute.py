@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     worse=("-feed",),
     at=("F", "feed_per_minute", "line", "arc_clockwise", "arc_counterclockwise"),
     once="feed",
+    doubts=(("rate", "feed"),),
 )
 def feed_of_revolution_per_minute(path: ProgrammedPath, feeds: Feeds) -> Mask:
     """

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     values=("feed", "limit"),
     worse=("feed:limit",),
     at=("F",),
-    follows={"feed": ("c-feed-above-limit", "feed-of-revolution-per-minute")},
+    subject="rate",
 )
 def feed_outside_recommended_range(feed_ranges: FeedRanges, feeds: Feeds) -> Mask:
     """

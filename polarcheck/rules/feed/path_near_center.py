@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     worse=("-nearest",),
     gouges=True,
     at=("X", "U", "C", "H"),
-    follows={"block": ("c-feed-above-limit", "start-up-sweeps-contour")},
+    subject="rate",
 )
 def path_near_center(center: Center, tool_center: ToolCenter, machine: Machine) -> Hits:
     """

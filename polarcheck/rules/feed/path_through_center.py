@@ -17,12 +17,9 @@ if TYPE_CHECKING:
     ERROR,
     "tool center {meeting}",
     at=("X", "U", "C", "H"),
+    subject="speed",
     doubts=(("move", "X before"),),
     gouges=True,
-    follows={
-        "block": ("uncompensated-cut-into-part", "lift-missing-between-cuts"),
-        "loop": ("side-changed-in-offset-mode",),
-    },
     is_symptom=True,
 )
 def path_through_center(path: ProgrammedPath, center: Center, arcs: Arcs) -> Mask:

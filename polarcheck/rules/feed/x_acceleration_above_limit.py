@@ -22,7 +22,8 @@ if TYPE_CHECKING:
     worse=("x_acceleration",),
     at=("F",),
     once="feed",
-    follows={"feed": ("c-feed-above-limit", "c-acceleration-above-limit"), "block": ("start-up-sweeps-contour",)},
+    follows={"feed": ("c-acceleration-above-limit",)},
+    subject="rate",
 )
 def x_acceleration_above_limit(feedrate: Feedrate, center: Center, feeds: Feeds) -> Hits:
     """

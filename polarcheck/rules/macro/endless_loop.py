@@ -9,7 +9,7 @@ if TYPE_CHECKING:
     from polarcheck.rules.hit import Details, Hit
 
 
-@rule(ERROR, "{text} {reason}", over="faults")
+@rule(ERROR, "{text} {reason}", over="faults", doubts=(("mode", "program"),))
 def endless_loop(faults: Faults) -> Hits:
     """
     Program that never ends.

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     "{text}: DO and END take the numbers 1 to {limit}; the control stops here",
     values=("limit",),
     over="faults",
+    doubts=(("word", "block"),),
 )
 def loop_number_out_of_range(faults: Faults) -> Mask:
     """

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     "{reason}; the control stops here: {closing_loops}",
     over="faults",
     once="structure",
-    follows={"block": ("loop-number-out-of-range",)},
+    subject="word",
 )
 def loop_unbalanced(faults: Faults) -> Mask:
     """

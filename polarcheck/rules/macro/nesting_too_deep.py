@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from polarcheck.rules.hit import Details, Hit
 
 
-@rule(ERROR, "{text} {reason}; the control stops here", over="faults")
+@rule(ERROR, "{text} {reason}; the control stops here", over="faults", doubts=(("mode", "program"),))
 def nesting_too_deep(faults: Faults) -> Mask:
     """
     Calls, loops or brackets nested too deep.

@@ -10,7 +10,13 @@ if TYPE_CHECKING:
     from polarcheck.rules.hit import Details, Hit
 
 
-@rule(WARNING, "{text} {reason}", values=("program",), over="faults", follows={"block": ("too-many-digits",)})
+@rule(
+    WARNING,
+    "{text} {reason}",
+    values=("program",),
+    over="faults",
+    subject="word",
+)
 def subprogram_missing(faults: Faults) -> Mask:
     """
     Called program that is not found.

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     " over as an argument",
     over="faults",
     once="name",
+    doubts=(("word", "block"),),
 )
 def vacant_variable(faults: Faults) -> Mask:
     """

@@ -19,8 +19,7 @@ if TYPE_CHECKING:
     over="sections",
     at=("on",),
     once="program",
-    doubts=(("metal", "section"), ("position", "section")),
-    follows={"tool call": ("polar-switched-in-offset-mode",)},
+    doubts=(("metal", "program"), ("position", "section")),
 )
 def c_elsewhere_at_entry(entry_angles: EntryAngles) -> Mask:
     """

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     once="compensation",
     subject="side",
     doubts=(("compensation", "loop"),),
-    follows={"block": ("z-with-plane-axis", "helical-arc-in-polar", "arc-off-polar-plane"), "loop": OUT_OF_PLACE},
+    follows={"block": ("z-with-plane-axis", "helical-arc-in-polar"), "loop": OUT_OF_PLACE},
     is_symptom=True,
 )
 def contour_at_two_depths(contour_depths: ContourDepths) -> Mask:

@@ -17,18 +17,9 @@ if TYPE_CHECKING:
     values=("plane_x", "plane_c", "other_line"),
     gouges=True,
     once="loop",
-    subject="side",
+    subject="outline",
     doubts=(("compensation", "loop"),),
-    follows={
-        "loop": (
-            *OUT_OF_PLACE,
-            "arc-sense-reversed",
-            "arc-not-tangent",
-            "arc-word-without-arc",
-            "nearly-regular-contour",
-            "arc-sweep-above-limit",
-        )
-    },
+    follows={"loop": (*OUT_OF_PLACE, "arc-sweep-above-limit")},
     is_symptom=True,
 )
 def contour_crosses_itself(crossings: Crossings) -> Mask:

@@ -16,30 +16,8 @@ if TYPE_CHECKING:
     "{in_air}",
     values=("z",),
     once="section",
-    subject="size",
-    follows={
-        "section": (
-            *OUT_OF_PLACE,
-            "contour-at-two-depths",
-            "z-with-plane-axis",
-            "helical-arc-in-polar",
-            "side-repeated-in-offset-mode",
-            "polar-switch-not-alone",
-            "diameter-radius-mixed",
-            "degrees-in-polar",
-            "number-without-point",
-            "bad-number",
-        ),
-        "program": ("comment-contradicts-part",),
-        "loop": (
-            "side-of-compensation-mirrored",
-            "arc-end-off-circle",
-            "contour-crosses-itself",
-            "incremental-contour-not-closed",
-            "nearly-regular-contour",
-            "passes-differ",
-        ),
-    },
+    subject="stock",
+    follows={"section": (*OUT_OF_PLACE, "contour-at-two-depths", "z-with-plane-axis", "helical-arc-in-polar")},
 )
 def cut_in_air(air_cuts: AirCuts) -> Hits:
     """

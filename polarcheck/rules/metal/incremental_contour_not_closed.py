@@ -16,18 +16,9 @@ if TYPE_CHECKING:
     values=("gap", "plane_x", "plane_c"),
     worse=("gap",),
     once="loop",
-    subject="side",
+    subject="outline",
     doubts=(("compensation", "loop"),),
-    follows={
-        "loop": (
-            *OUT_OF_PLACE,
-            "arc-sense-reversed",
-            "arc-not-tangent",
-            "arc-word-without-arc",
-            "contour-crosses-itself",
-            "nearly-regular-contour",
-        )
-    },
+    follows={"loop": (*OUT_OF_PLACE, "contour-crosses-itself")},
 )
 def incremental_contour_not_closed(increments: Increments) -> Hits:
     """

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     values=("z", "other_line"),
     gouges=True,
     follows={"section": OUT_OF_PLACE},
+    doubts=(("speed", "block"), ("metal", "block")),
 )
 def lift_missing_between_cuts(strokes: Strokes) -> Mask:
     """

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     once="section",
     subject="",
     follows={"section": ("rapid-in-polar", "degrees-in-polar")},
+    doubts=(("rapid", "motion"),),
 )
 def rapid_along_contour(rapid_contours: RapidContours, mode: PolarMode, machine: Machine) -> Hits:
     """

@@ -17,11 +17,7 @@ if TYPE_CHECKING:
     worse=("-z",),
     gouges=True,
     once="tool call",
-    subject="size",
-    follows={
-        "motion": ("rapid-in-polar", "rapid-along-contour"),
-        "tool call": ("approach-inside-stock",),
-    },
+    subject="rapid",
 )
 def rapid_plunge_into_stock(workpiece: Workpiece) -> Hits:
     """

@@ -17,14 +17,9 @@ if TYPE_CHECKING:
     worse=("-z",),
     gouges=True,
     once="tool call",
-    subject="size",
+    subject="rapid",
     follows={
-        "block": ("uncompensated-cut-into-part", "rapid-plunge-into-stock"),
-        "tool call": (
-            "start-up-shorter-than-radius",
-            "cancel-shorter-than-radius",
-            "polar-switched-in-offset-mode",
-        ),
+        "block": ("rapid-plunge-into-stock",),
         "program": ("polar-switched-in-offset-mode", "polar-never-entered"),
     },
     is_symptom=True,

@@ -18,12 +18,8 @@ if TYPE_CHECKING:
     worse=("-z",),
     gouges=True,
     once="tool call",
-    subject="size",
-    follows={
-        "block": ("uncompensated-cut-into-part", "rapid-through-part"),
-        "motion": ("rapid-in-polar", "rapid-along-contour"),
-        "tool call": ("approach-inside-stock", "rapid-plunge-into-stock"),
-    },
+    subject="rapid",
+    follows={"block": ("rapid-through-part",), "tool call": ("rapid-plunge-into-stock",)},
 )
 def rapid_through_stock(workpiece: Workpiece) -> Hits:
     """

@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     "the center of the arc is its start or its end: a radius of 0",
     at=("I", "J"),
     doubts=END_IN_DOUBT,
-    follows={"loop": ("number-without-point",)},
     is_symptom=True,
 )
 def arc_center_on_path(arcs: Arcs) -> Mask:

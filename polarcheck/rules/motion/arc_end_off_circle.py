@@ -23,11 +23,7 @@ if TYPE_CHECKING:
     at=("X", "U", "C", "H", "I", "J"),
     once="loop",
     doubts=END_IN_DOUBT,
-    follows={
-        "block": ("arc-center-on-path",),
-        "loop": ("number-without-point",),
-        "misfitting arcs": ("arc-radius-too-small",),
-    },
+    follows={"block": ("arc-center-on-path",), "misfitting arcs": ("arc-radius-too-small",)},
     is_symptom=True,
 )
 def arc_end_off_circle(arcs: Arcs, machine: Machine) -> Hits:

@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     at=("X", "U", "C", "H", "R"),
     once="misfitting arcs",
     doubts=END_IN_DOUBT,
-    follows={"loop": ("number-without-point",)},
     is_symptom=True,
 )
 def arc_radius_too_small(arcs: Arcs, machine: Machine) -> Mask:

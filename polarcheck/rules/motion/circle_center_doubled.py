@@ -16,9 +16,8 @@ if TYPE_CHECKING:
     WARNING,
     "full circle with {arc} around {written_center}; with {word_needed} it is a circle around {intended_center}",
     values=("arc_radius", "arc_radius_needed", "word_needed", "other_line"),
-    subject="",
+    subject="shape",
     doubts=NO_SUCH_ARC,
-    follows={"section": ("number-without-point", "diameter-radius-mixed", "degrees-in-polar")},
     gouges=True,
 )
 def circle_center_doubled(full_circles: FullCircles) -> Mask:

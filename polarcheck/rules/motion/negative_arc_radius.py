@@ -14,9 +14,9 @@ if TYPE_CHECKING:
     WARNING,
     "negative radius of an arc: more than 180 deg, or an alarm",
     at=("R",),
-    subject="",
+    subject="arc",
+    follows={"block": ("arc-sweep-above-limit",)},
     doubts=(("compensation", "loop"),),
-    follows={"block": ("full-circle-by-radius", "arc-off-polar-plane", "arc-sweep-above-limit")},
     gouges=True,
 )
 def negative_arc_radius(arcs: Arcs, tangency: Tangency) -> Mask:

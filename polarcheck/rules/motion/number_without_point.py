@@ -21,8 +21,7 @@ _FEED_INCREMENT_INCH = 0.01
     over="words",
     once="program",
     subject="size",
-    doubts=(("metal", "loop"),),
-    follows={"block": ("too-many-digits", "stray-character", "bad-number")},
+    doubts=(("metal", "loop"), ("position", "loop")),
 )
 def number_without_point(unpointed: Unpointed) -> Hits:
     """

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     gouges=True,
     at=("arc_clockwise", "arc_counterclockwise"),
     once="tool call",
-    follows={"program": ("polar-code-of-another-control", "polar-switch-unknown"), "file": ("other-dialect",)},
+    subject="mode",
 )
 def arc_outside_polar_mode(procedure: Procedure) -> Mask:
     """

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     ERROR,
     "{code} cannot be used in the polar mode; write it {where}",
     values=("code",),
-    follows={"block": ("incremental-word-of-other-code-system", "polar-switch-unknown")},
+    subject="word",
 )
 def code_not_allowed_in_polar(mode_words: ModeWords, machine: Machine) -> Hits:
     """

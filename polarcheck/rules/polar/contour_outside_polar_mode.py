@@ -17,11 +17,8 @@ if TYPE_CHECKING:
     values=("code_needed",),
     gouges=True,
     once="tool call",
-    follows={
-        "tool call": ("polar-never-entered", "arc-outside-polar-mode", "polar-switched-in-offset-mode"),
-        "program": ("polar-code-of-another-control",),
-        "file": ("other-dialect",),
-    },
+    follows={"tool call": ("polar-never-entered", "arc-outside-polar-mode")},
+    subject="mode",
 )
 def contour_outside_polar_mode(procedure: Procedure) -> Mask:
     """

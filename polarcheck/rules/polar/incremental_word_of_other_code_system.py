@@ -22,7 +22,13 @@ _IN_SYSTEM_A = {
 }
 
 
-@rule(ERROR, "{meaning}; if the lathe runs another system, set control.g_code_system", values=("word",), once="program")
+@rule(
+    ERROR,
+    "{meaning}; if the lathe runs another system, set control.g_code_system",
+    values=("word",),
+    once="program",
+    doubts=(("word", "block"),),
+)
 def incremental_word_of_other_code_system(
     modal: ModalStates, axes: PlaneAxes, mode: PolarMode, mode_words: ModeWords, machine: Machine
 ) -> Hits:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     "{word} beside {switch} {infeed_fault}",
     values=("word", "infeed"),
     at=("E",),
-    follows={"block": ("too-many-digits",)},
+    subject="word",
 )
 def infeed_out_of_range(switch_words: SwitchWords) -> Hits:
     """

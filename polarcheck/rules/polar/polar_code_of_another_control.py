@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     "{code} begins no polar mode on {title}, where {on_of_this} does; {instead}{else_a_macro}",
     values=("code",),
     once="program",
+    doubts=(("word", "file"), ("mode", "program")),
 )
 def polar_code_of_another_control(other_mode: OtherMode) -> Hits:
     """

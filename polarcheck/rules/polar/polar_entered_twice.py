@@ -16,7 +16,8 @@ if TYPE_CHECKING:
     "{code} again: the polar mode is on since line {other_line}",
     values=("code", "other_line"),
     at=("on",),
-    follows={"block": ("polar-switched-in-offset-mode",), "section": ("polar-never-left",)},
+    follows={"section": ("polar-never-left",)},
+    subject="mode",
 )
 def polar_entered_twice(axes: PlaneAxes, mode: PolarMode) -> Mask:
     """

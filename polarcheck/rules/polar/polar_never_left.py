@@ -22,7 +22,7 @@ _BLOCK_LENGTH = 60
     values=("other_line",),
     over="sections",
     at=("on",),
-    follows={"program": ("endless-loop", "nesting-too-deep"), "section": ("polar-switch-unknown",)},
+    subject="mode",
 )
 def polar_never_left(mode: PolarMode) -> Mask:
     """

@@ -9,7 +9,7 @@ if TYPE_CHECKING:
     from polarcheck.rules.hit import Details, Hit
 
 
-@rule(WARNING, "{slip}", values=("code_needed",))
+@rule(WARNING, "{slip}", values=("code_needed",), doubts=(("word", "block"), ("mode", "program")))
 def polar_switch_unknown(switch_slips: SwitchSlips) -> Hits:
     """
     Code that is meant to switch the polar mode and does not.

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     values=("code",),
     at=("on", "off"),
     once="program",
-    doubts=(("compensation", "section"),),
+    doubts=(("compensation", "section"), ("mode", "tool call"), ("rapid", "tool call")),
     follows={
         "section": (
             "side-repeated-in-offset-mode",

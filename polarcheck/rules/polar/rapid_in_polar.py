@@ -19,7 +19,8 @@ if TYPE_CHECKING:
     ERROR,
     "G0 cannot be used in the polar mode; {instead_of_rapid}",
     at=("rapid",),
-    follows={"block": ("code-not-allowed-in-polar", "polar-entered-twice"), "section": ("degrees-in-polar",)},
+    follows={"block": ("code-not-allowed-in-polar",), "section": ("degrees-in-polar",)},
+    doubts=(("rapid", "motion"),),
 )
 def rapid_in_polar(
     blocks: ExecutedBlocks, modal: ModalStates, axes: PlaneAxes, mode: PolarMode, angles: Angles

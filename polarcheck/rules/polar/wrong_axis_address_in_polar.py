@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     values=("word",),
     once="section",
     doubts=(("position", "loop"),),
-    follows={"block": ("polar-entered-twice",)},
 )
 def wrong_axis_address_in_polar(mode: PolarMode, mode_words: ModeWords) -> Hits:
     """

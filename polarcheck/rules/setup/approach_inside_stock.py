@@ -19,20 +19,7 @@ if TYPE_CHECKING:
     worse=("x:x_needed",),
     at=("on",),
     subject="size",
-    doubts=(("compensation", "first start-up"), ("move", "X before")),
-    follows={
-        "tool call": ("offset-of-another-tool",),
-        "block": ("x-not-positive-at-entry",),
-        "section": (
-            "degrees-in-polar",
-            "number-without-point",
-            "arc-radius-too-small",
-            "arc-end-off-circle",
-            "contour-crosses-itself",
-            "nearly-regular-contour",
-            "side-of-compensation-mirrored",
-        ),
-    },
+    doubts=(("compensation", "first start-up"), ("move", "X before"), ("metal", "block"), ("rapid", "tool call")),
     is_symptom=True,
 )
 def approach_inside_stock(approaches: Approaches) -> Hits:

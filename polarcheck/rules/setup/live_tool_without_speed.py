@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     "not at all; write S before it",
     values=("code",),
     once="program",
-    follows={"block": ("vacant-variable",)},
+    subject="word",
 )
 def live_tool_without_speed(blocks: ExecutedBlocks, procedure: Procedure, machine: Machine) -> Hits:
     """

@@ -30,11 +30,9 @@ _FAULTS = {
     worse=("count",),
     over="words",
     once="name",
-    follows={
-        "file": ("polar-code-of-another-control",),
-        "block": ("comment-nested", "comment-not-closed"),
-        "structure": ("macro-syntax",),
-    },
+    follows={"structure": ("macro-syntax",)},
+    subject="word",
+    doubts=(("word", "block"),),
 )
 def bad_number(written: Written, other_mode: OtherMode) -> Hits:
     """

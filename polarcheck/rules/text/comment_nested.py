@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     values=("count",),
     worse=("count",),
     over="comments",
+    doubts=(("word", "block"),),
 )
 def comment_nested(written: Written) -> Hits:
     """

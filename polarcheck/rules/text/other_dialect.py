@@ -12,7 +12,12 @@ if TYPE_CHECKING:
 _SIGN_LENGTH = 40
 
 
-@rule(NOTE, "{written_for}; no rule looked at it: convert it for this lathe before it is checked", over="files")
+@rule(
+    NOTE,
+    "{written_for}; no rule looked at it: convert it for this lathe before it is checked",
+    over="files",
+    doubts=(("mode", "file"),),
+)
 def other_dialect(dialect: Dialect) -> Hits:
     """
     File in the language of another machine.

@@ -21,10 +21,8 @@ _DIGITS = 12
     values=("count",),
     worse=("count",),
     over="strays",
-    follows={
-        "file": ("polar-code-of-another-control",),
-        "block": ("comment-nested", "comment-not-closed"),
-    },
+    subject="word",
+    doubts=(("word", "block"),),
 )
 def stray_character(written: Written, other_mode: OtherMode) -> Hits:
     """

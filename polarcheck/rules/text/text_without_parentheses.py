@@ -25,7 +25,7 @@ _DESCRIPTION = 5
     values=("count",),
     worse=("count",),
     over="prose",
-    follows={"block": ("comment-nested", "comment-not-closed")},
+    subject="word",
 )
 def text_without_parentheses(written: Written) -> Hits:
     """

@@ -10,7 +10,13 @@ if TYPE_CHECKING:
     from polarcheck.rules.hit import Details, Hit
 
 
-@rule(ERROR, "{word} has more than {limit} digits", values=("word", "digits", "limit"), over="words")
+@rule(
+    ERROR,
+    "{word} has more than {limit} digits",
+    values=("word", "digits", "limit"),
+    over="words",
+    doubts=(("word", "block"),),
+)
 def too_many_digits(written: Written, machine: Machine) -> Hits:
     """
     Number with too many digits.

@@ -22,7 +22,7 @@ OWN_CODES_END = 100
     values=("code", "count"),
     worse=("count",),
     over="words",
-    follows={"file": ("polar-code-of-another-control", "polar-switch-unknown")},
+    subject="word",
 )
 def unknown_code(
     words: Words, written: Written, machine: Machine, other_mode: OtherMode, switch_slips: SwitchSlips
