@@ -214,6 +214,8 @@ class Engine:
         if not len(index):
             return None
         cause, element = self._causes(rule, index)
+        if rule.over == "rows" and (cause < 0).any() and (cause >= 0).any():
+            self._share_causes(places.blocks(rule.over, self.tables)[index], cause, element)
         finding = np.zeros(len(index), np.int64)
         silent = np.zeros(len(index), bool)
         findings: list[Finding] = []
@@ -293,6 +295,16 @@ class Engine:
                     is_caused &= may_follow[span][index]
                 cause[is_caused], element[is_caused] = self._names.index(name), other_hits[index_of_cause[is_caused]]
         return cause, element
+
+    @staticmethod
+    def _share_causes(block: Rows, cause: Rows, element: Rows) -> None:
+        """Give the cause of a run of a block to its other runs: one mistake in a subprogram is told once."""
+        caused, alone = np.flatnonzero(cause >= 0), np.flatnonzero(cause < 0)
+        blocks, first = np.unique(block[caused], return_index=True)
+        number = np.minimum(np.searchsorted(blocks, block[alone]), len(blocks) - 1)
+        is_same = blocks[number] == block[alone]
+        model = caused[first[number[is_same]]]
+        cause[alone[is_same]], element[alone[is_same]] = cause[model], element[model]
 
     def _merged(self, rule: Rule, index: Rows, worst: Floats | None) -> tuple[Rows, Rows, Rows]:
         """
