@@ -101,7 +101,8 @@ def _of_axis(trace: Trace, loop: WrittenLoop, number: int) -> Iterator[Edit]:
             text = address + plain_number(value)
             yield Edit("word", corner, (word,), text, "another number is meant", _SELDOM, number, value)
         if other.word[corner] < 0:
-            letter = other.step_address if axis.is_step[corner] else other.address
+            # In G91 the letter of a position is an increment, too.
+            letter = other.step_address if address.strip("=") == axis.step_address.strip("=") else other.address
             text = letter + "=" * address.endswith("=") + written
             yield Edit("letter", corner, (word,), text, "it has the letter of the other axis", 0.0, number)
         elif not number and (parts := _parts(trace, int(other.word[corner])))[0]:
