@@ -87,6 +87,21 @@ def _absolute(trace: Trace, word: int) -> Iterator[list[CodeEdit]]:
         yield [CodeEdit(row, edit, [_at_head(trace, row, codes[0])])]
 
 
+def unneeded(trace: Trace, own: Rows) -> Iterator[list[CodeEdit]]:
+    """Without a code of compensation or of increments in the middle of a path, or alone in a block beside it."""
+    machine = trace.machine
+    keys = ("compensation_left", "compensation_right", "incremental", "absolute")
+    words = trace.blocks.code_indices(*(code for key in keys for code in machine.codes(key)))
+    rows = trace.run.row[words]
+    for word, row in zip(words.tolist(), rows.tolist(), strict=True):
+        is_inside = own[0] < row < own[-1]
+        is_alone = own[0] - _NEAR <= row <= own[-1] + _NEAR and not trace.path.travels[row]
+        if (is_inside or is_alone) and is_plain(trace.run, row):
+            code = trace.run.written(word).strip()
+            edit = Edit("code", 0, (word,), "", "it is a code too many", 0.0, how=f"without {code}")
+            yield [CodeEdit(row, edit, without(trace.run, row, [word]))]
+
+
 def unskipped(trace: Trace, own: Rows) -> Iterator[list[CodeEdit]]:
     """The sign of block skip taken away from a block that is skipped in the path, or beside it."""
     run, text = trace.run, trace.run.text

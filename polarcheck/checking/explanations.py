@@ -9,13 +9,13 @@ checked. An edit explains the findings that are gone then, if no other finding h
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from itertools import islice
+from itertools import chain, islice
 from typing import NamedTuple
 
 import msgspec
 import numpy as np
 
-from polarcheck.checking.code_edits import CodeEdit, exchanged, ramp_edits, unskipped
+from polarcheck.checking.code_edits import CodeEdit, exchanged, ramp_edits, unneeded, unskipped
 from polarcheck.checking.edits import applied, origins
 from polarcheck.checking.engine import Engine, with_following
 from polarcheck.columns.contour.correction import Correction
@@ -145,7 +145,8 @@ class _Search:
         One that removes all symptoms of the path comes before one that leaves some. own: the lines of the path. others:
         those of other paths with a symptom, where another one may come, as by a comparison of passes.
         """
-        whole = self._by_codes(unskipped(self.trace, loop.row[1:]), own, others, 1)
+        of_code = chain(unskipped(self.trace, loop.row[1:]), unneeded(self.trace, loop.row[1:]))
+        whole = self._by_codes(of_code, own, others, 1)
         partly: list[_Explained] = []
         for likely in () if whole else likely_edits(self.trace, loop, _TRIALS, LEAST_IF_WHOLE):
             best, reach = (whole, _AS_LIKELY) if whole else (partly, _LESS_LIKELY)
