@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from polarcheck.columns.contour.passes import Passes, numbered
+from polarcheck.columns.contour.written_passes import WrittenDifference, written_differences
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Columns, Mask, Points, Rows, cached_property
 
@@ -52,11 +53,26 @@ class PassDifferences(Columns, frozen=True):
     @cached_property
     def found(self) -> dict[int, Difference]:
         """The differences, by the row that differs."""
-        return {
+        of_words = {
+            int(other.rows[other.first]): Difference(
+                int(other.rows[other.first]), int(other.model[other.first]), False, *map(int, other.model[[0, -1]])
+            )
+            for other in self._written
+        }
+        return of_words | {
             difference.row: difference
             for differences in reversed(self._by_group)
             for difference in reversed(differences)
         }
+
+    @cached_property
+    def _written(self) -> list[WrittenDifference]:
+        """Passes that are written otherwise, and of which the points alone tell nothing."""
+        known = np.array([number for group in self._by_group for number in group], np.int64).reshape(-1, 5)
+        stretches = list(written_differences(self.trace))
+        return [
+            other for other in stretches if not np.any((known[:, 0] >= other.rows[0]) & (known[:, 0] <= other.rows[-1]))
+        ]
 
     @cached_property
     def _by_group(self) -> list[list[Difference]]:
@@ -67,6 +83,9 @@ class PassDifferences(Columns, frozen=True):
     def twin(self) -> Rows:
         """The same number for all rows of passes that are compared, where one of them differs; -1 for other rows."""
         column = np.full(len(self.trace), -1)
+        for number, other in enumerate(self._written, len(self._groups)):
+            for rows in (other.rows, other.model):
+                column[rows[0] : rows[-1] + 1] = number
         passes = self.passes
         for number, ((_, group), differences) in enumerate(zip(self._groups, self._by_group, strict=True)):
             for which in group.tolist() if differences else ():

@@ -30,7 +30,8 @@ def passes_differ(pass_differences: PassDifferences) -> Mask:
     Pass of a contour that differs from another pass of it in one block.
 
     The same contour is cut at several depths, or in several sections, and one pass is unlike the others in one word: a
-    digit or a sign is wrong, or a block is missing. The wall has a step there. Of several passes the one that differs
+    digit or a sign is wrong, or a block is missing; or the words are the same, and one code or two blocks stand
+    elsewhere. The wall has a step there. Of several passes the one that differs
     from the others is reported, of two the later one. Passes that differ as a whole, as with an allowance, are not
     compared, and a side that is moved on one level may be meant.
 
@@ -112,6 +113,13 @@ def _difference(hit: Hit, arcs: Arcs, other: int) -> str:
     if abs(here - there) > _APART:
         ends = hit.point_off_center(here), hit.point_off_center(there)
         return f"this block ends at {ends[0]}, line {line} at {ends[1]}"
+    for ramp, does in ((trace.compensation.starts_up, "begins"), (trace.compensation.cancels, "ends")):
+        if ramp[row] != ramp[other]:
+            return (
+                f"this block {does} the compensation, line {line} does not"
+                if ramp[row]
+                else (f"line {line} {does} the compensation, this block does not")
+            )
     if trace.path.is_arc[row] and trace.path.is_arc[other]:
         codes = [trace.machine.codes(MOVES[int(trace.axes.motion[at])])[0] for at in (row, other)]
         arc, its = (f"{code} {written_arc(trace, arcs, at)}" for code, at in zip(codes, (row, other), strict=True))

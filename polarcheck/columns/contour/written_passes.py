@@ -1,0 +1,91 @@
+"""Passes that are written with the same numbers, and differ in a code, a letter or the order of two blocks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from polarcheck.columns.trace import Trace
+from polarcheck.foundation.arrays import Floats, Rows
+from polarcheck.foundation.states import Side
+
+#: Blocks of a pass, and of those the least that are alike; blocks with other words, or other compensation.
+_FEWEST, _MOST, _ALIKE, _DIFFERING = 5, 200, 3, 2
+#: Words of moves; a number of more digits is rounded [digits].
+_ADDRESSES, _DIGITS = "XUCHYVIJRL", 5
+#: States of a block that may differ: numbers of motions, of increments, and of compensation.
+_STEP, _COMPENSATION = 16, 32
+
+_Hash = NDArray[np.uint64]
+
+
+class WrittenDifference(NamedTuple):
+    """Rows of a pass and of its model, one for one, and the first of them that is written otherwise."""
+
+    rows: Rows
+    model: Rows
+    first: int
+
+
+def written_differences(trace: Trace) -> Iterator[WrittenDifference]:
+    """The passes that differ from the most frequent one with the same numbers; of as many, from the one above."""
+    values = np.stack([trace.blocks.word(address) for address in _ADDRESSES])
+    rows = np.flatnonzero(trace.mode.in_polar & ~np.isnan(values).all(axis=0))
+    begins = (trace.path.moves_z & ~trace.path.travels) | trace.mode.enters
+    first = np.flatnonzero(np.diff(np.cumsum(begins)[rows], prepend=-1))
+    count = np.diff(first, append=len(rows))
+    chosen = np.flatnonzero((count >= _FEWEST) & (count <= _MOST))
+    if len(chosen) < 2:
+        return
+    number = _mixed(values[:, rows])
+    words = np.add.reduce(number * _odd(len(_ADDRESSES))[:, None], axis=0, dtype=np.uint64)
+    state = _states(trace)[rows]
+    index = np.arange(len(rows)) - np.repeat(first, count)
+    total = np.add.reduceat(np.add.reduce(number, axis=0, dtype=np.uint64), first)
+    shape = np.add.reduceat(_mixed(index.astype(np.float64)) * (words + state.astype(np.uint64)), first)
+    program = trace.blocks.program[rows[first]]
+    keys = np.stack([total[chosen], count[chosen].astype(np.uint64), program[chosen].astype(np.uint64)], axis=1)
+    _, group, members = np.unique(keys, axis=0, return_inverse=True, return_counts=True)
+    for which in np.flatnonzero(members > 1).tolist():
+        passes = chosen[group.reshape(-1) == which]
+        _, begin, frequency = np.unique(shape[passes], return_index=True, return_counts=True)
+        order = begin[np.lexsort((begin, -frequency))]
+        model = first[passes[order[0]]] + np.arange(count[passes[0]])
+        for other in passes[order[1:]].tolist():
+            own = first[other] + np.arange(count[other])
+            row = _difference(words[own] != words[model], state[own], state[model])
+            if row is not None and trace.run.block[rows[own[row]]] != trace.run.block[rows[model[row]]]:
+                yield WrittenDifference(rows[own], rows[model], row)
+
+
+def _mixed(values: Floats) -> _Hash:
+    """Numbers as bits without order; 0 for none."""
+    bits = np.rint(np.nan_to_num(values, nan=0.0) * 10**_DIGITS).astype(np.int64).astype(np.uint64)
+    bits = (bits + np.uint64(1)) * np.uint64(0x9E3779B97F4A7C15)
+    bits ^= bits >> np.uint64(29)
+    return np.where(np.isnan(values), np.uint64(0), bits * np.uint64(0xBF58476D1CE4E5B9))
+
+
+def _odd(count: int) -> _Hash:
+    return np.asarray(2 * np.arange(count, dtype=np.uint64) + np.uint64(1))
+
+
+def _states(trace: Trace) -> Rows:
+    """What is in force in each row, as one number."""
+    compensation = trace.compensation
+    phase = 4 * (compensation.side != Side.OFF) + 2 * compensation.starts_up + compensation.cancels
+    return np.asarray(trace.axes.motion + _STEP * trace.modal.is_step("X") + _COMPENSATION * phase, np.int64)
+
+
+def _difference(is_otherwise: NDArray[np.bool_], own: Rows, model: Rows) -> int | None:
+    """The first block that differs, where one slip of a code or of two blocks explains that; None where none does."""
+    differs = np.flatnonzero(is_otherwise | (own != model))
+    phases = own // _COMPENSATION != model // _COMPENSATION
+    if np.ptp(differs) + 1 != len(differs) or len(own) - len(differs) < _ALIKE:
+        return None
+    if max(np.count_nonzero(is_otherwise), np.count_nonzero(phases)) > _DIFFERING:
+        return None
+    return int(differs[0])
