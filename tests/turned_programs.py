@@ -469,8 +469,13 @@ def _has_two_tools(program: Program) -> bool:
     return len(program.radii) == 2
 
 
-def _of_roughing(program: Program, index: int, draw: random.Random) -> list[str] | None:
-    return _scaled("X", 0.8, 5.0)(program, index, draw) if program.lines[index].section == 1 else None
+def _farther_in(section: int) -> Change:
+    """A corner of the roughing, section 0, or of the finish, section 1."""
+
+    def change(program: Program, index: int, draw: random.Random) -> list[str] | None:
+        return _scaled("X", 0.8, 5.0)(program, index, draw) if program.lines[index].section == section else None
+
+    return change
 
 
 def _shows_corner(program: Program) -> bool:
@@ -480,7 +485,7 @@ def _shows_corner(program: Program) -> bool:
 
 
 def _rough_at_c20(program: Program, index: int, draw: random.Random) -> list[str] | None:
-    return ["C20."] if program.lines[index].section == 1 else None
+    return ["C20."] if program.lines[index].section == 0 else None
 
 
 def _is_deep(program: Program) -> bool:
@@ -526,7 +531,8 @@ KINDS: dict[str, Kind] = {
     "block of G40 is missing": Kind(("cancel",), _without, _WITH_G41),
     "roughing at another C": Kind(("index",), _rough_at_c20, _BOSS, _has_two_tools),
     "spigot too short": Kind(("spigot",), _scaled("Z", 0.1), _OPEN, _is_turned_at_once),
-    "roughing too far in": Kind(("contour",), _of_roughing, _BOSS, _has_two_tools),
+    "roughing too far in": Kind(("contour",), _farther_in(0), _BOSS, _has_two_tools),
+    "finish too far in": Kind(("contour",), _farther_in(1), _BOSS, _has_two_tools),
     "G13.1 is missing": Kind(("off",), _without),
     "G12.1 is missing": Kind(("on",), _without, ("pocket", *_WITH_G41)),
     "turret turns in the mode": Kind(("contour",), _with("T0808"), _WITH_G41),

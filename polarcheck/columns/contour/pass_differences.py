@@ -6,10 +6,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from polarcheck.columns.contour.offset_passes import OddPoint, odd_points
 from polarcheck.columns.contour.passes import Passes, numbered
 from polarcheck.columns.contour.written_passes import WrittenDifference, written_differences
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Columns, Mask, Points, Rows, cached_property
+from polarcheck.foundation.states import Side
 
 #: Points nearer to each other than this [mm] are the same, and how far off a point is that differs.
 _SAME, _OTHER = 1e-4, 0.004
@@ -26,7 +28,7 @@ class Difference(NamedTuple):
     A pass that differs from another one.
 
     row: the row that differs. other: that of the other pass. is_missing: the other pass has a block more, row `other`.
-    first, last: the rows of the other pass.
+    first, last: the rows of the other pass. beside: the pass lies beside the other one, but for this point.
     """
 
     row: int
@@ -34,6 +36,7 @@ class Difference(NamedTuple):
     is_missing: bool
     first: int
     last: int
+    beside: OddPoint | None = None
 
 
 class _Stretch(NamedTuple):
@@ -52,26 +55,42 @@ class PassDifferences(Columns, frozen=True):
 
     @cached_property
     def found(self) -> dict[int, Difference]:
-        """The differences, by the row that differs."""
-        of_words = {
-            int(other.rows[other.first]): Difference(
-                int(other.rows[other.first]), int(other.model[other.first]), False, *map(int, other.model[[0, -1]])
-            )
-            for other in self._written
-        }
-        return of_words | {
-            difference.row: difference
-            for differences in reversed(self._by_group)
-            for difference in reversed(differences)
-        }
+        """The differences, by the row that differs. Of two passes a third one beside them shows which is wrong."""
+        shown = {difference.row for difference in self._beside}
+        differences = [one for group in self._by_group for one in group if not {one.row, one.other} & shown]
+        return {difference.row: difference for difference in reversed([*differences, *self._alone, *self._of_words])}
+
+    @cached_property
+    def _alone(self) -> list[Difference]:
+        """The differences of passes that are in no group."""
+        return [*self._beside, *self._on_other_side]
+
+    @cached_property
+    def _beside(self) -> list[Difference]:
+        """The passes that lie beside another one but for a point, as a finish and its roughing."""
+        passes, row = self.passes, self.passes.row
+        differences = []
+        for odd in odd_points(passes):
+            first, last = (int(row[ends[passes.number[odd.model]]]) for ends in (passes.first, passes.last))
+            differences.append(Difference(int(row[odd.move]), int(row[odd.model]), False, first, last, odd))
+        return differences
+
+    @property
+    def _of_words(self) -> list[Difference]:
+        """The differences of passes that are written otherwise."""
+        return [
+            Difference(int(rows[first]), int(model[first]), False, *map(int, model[[0, -1]]))
+            for rows, model, first in self._written
+        ]
 
     @cached_property
     def _written(self) -> list[WrittenDifference]:
         """Passes that are written otherwise, and of which the points alone tell nothing."""
-        known = np.array([number for group in self._by_group for number in group], np.int64).reshape(-1, 5)
-        stretches = list(written_differences(self.trace))
+        known = np.array([one.row for group in (*self._by_group, self._alone) for one in group], np.int64)
         return [
-            other for other in stretches if not np.any((known[:, 0] >= other.rows[0]) & (known[:, 0] <= other.rows[-1]))
+            other
+            for other in written_differences(self.trace)
+            if not np.any((known >= other.rows[0]) & (known <= other.rows[-1]))
         ]
 
     @cached_property
@@ -79,17 +98,49 @@ class PassDifferences(Columns, frozen=True):
         """The differences of each group of passes."""
         return [self._differences_of(stretch, group) for stretch, group in self._groups]
 
+    @property
+    def _on_other_side(self) -> list[Difference]:
+        """
+        Passes with G41 where another pass of their section that is the same has G42, or the reverse, at other depths.
+
+        Of both sides the rarer one in the program is wrong, else the later. At one depth both walls of a slot are cut.
+        """
+        passes, trace = self.passes, self.trace
+        first, walls = passes.row[passes.first], np.flatnonzero(passes.is_wall)
+        side, z, section = trace.compensation.side[first], trace.path.z[first], trace.mode.section[first]
+        shapes = [{*passes.shape[walls[side[walls] == one]].tolist()} for one in (Side.LEFT, Side.RIGHT)]
+        begins = np.flatnonzero(trace.compensation.side != trace.compensation.side_before)
+        differences = []
+        for shape in sorted(shapes[0] & shapes[1]):
+            alike = walls[passes.shape[walls] == shape]
+            for number in alike.tolist():
+                beside = alike[(section[alike] == section[number]) & (side[alike] != side[number])]
+                same = np.count_nonzero(side[alike] == side[number])
+                is_rare = (len(alike) - same, number) > (same, beside.max(initial=-1))
+                if not len(beside) or not is_rare or (np.abs(z[beside] - z[number]) <= _OTHER).any():
+                    continue
+                row, other = (
+                    int(begins[np.searchsorted(begins, first[which], "right") - 1]) for which in (number, beside[0])
+                )
+                begin, end = (int(passes.row[ends[beside[0]]]) for ends in (passes.first, passes.last))
+                differences.append(Difference(row, other, False, begin, end))
+        return differences
+
     @cached_property
     def twin(self) -> Rows:
         """The same number for all rows of passes that are compared, where one of them differs; -1 for other rows."""
         column = np.full(len(self.trace), -1)
-        for number, other in enumerate(self._written, len(self._groups)):
+        for number, other in enumerate(self._written, len(self._groups) + len(self._alone)):
             for rows in (other.rows, other.model):
                 column[rows[0] : rows[-1] + 1] = number
         passes = self.passes
         for number, ((_, group), differences) in enumerate(zip(self._groups, self._by_group, strict=True)):
             for which in group.tolist() if differences else ():
                 column[passes.row[passes.first[which]] : passes.row[passes.last[which]] + 1] = number
+        for number, difference in enumerate(self._alone, len(self._groups)):
+            which = passes.number[np.searchsorted(passes.row, difference.row)]
+            column[passes.row[passes.first[which]] : passes.row[passes.last[which]] + 1] = number
+            column[difference.first : difference.last + 1] = number
         return column
 
     @cached_property

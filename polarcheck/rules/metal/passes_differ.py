@@ -7,7 +7,7 @@ from polarcheck.rules.causes import FAULTS_OF_CONTOUR
 from polarcheck.rules.rule import WARNING, rule
 
 if TYPE_CHECKING:
-    from polarcheck.columns.contour.pass_differences import PassDifferences
+    from polarcheck.columns.contour.pass_differences import Difference, PassDifferences
     from polarcheck.columns.path.arcs import Arcs
     from polarcheck.foundation.arrays import Mask
     from polarcheck.rules.hit import Details, Hit
@@ -18,11 +18,11 @@ _APART = 1e-3
 
 @rule(
     WARNING,
-    "{pass_difference}; all else in this pass is as in {other_pass}",
+    "{pass_difference}; all else in this pass is {alike} {other_pass}",
     values=("difference", "other_line"),
     worse=("difference",),
     subject="side",
-    follows={"twin": FAULTS_OF_CONTOUR},
+    follows={"twin": (*FAULTS_OF_CONTOUR, "contour-already-cut-into")},
     is_symptom=True,
 )
 def passes_differ(pass_differences: PassDifferences) -> Mask:
@@ -31,9 +31,10 @@ def passes_differ(pass_differences: PassDifferences) -> Mask:
 
     The same contour is cut at several depths, or in several sections, and one pass is unlike the others in one word: a
     digit or a sign is wrong, or a block is missing; or the words are the same, and one code or two blocks stand
-    elsewhere. The wall has a step there. Of several passes the one that differs
-    from the others is reported, of two the later one. Passes that differ as a whole, as with an allowance, are not
-    compared, and a side that is moved on one level may be meant.
+    elsewhere. The wall has a step there. Of several passes the one that differs from the others is reported, of two the
+    later one. A side that is moved on one level may be meant. A finish and its roughing are compared where they have
+    the same number of blocks, and one lies beside the other but for one point. Passes of a section that differ in G41
+    and G42 alone are reported where they have different depths: at one depth both cut the walls of a slot.
 
     Source: B-62764EN/01, p. 53 (a contour in several passes).
 
@@ -93,23 +94,32 @@ def passes_differ(pass_differences: PassDifferences) -> Mask:
 
 def details(hit: Hit, arcs: Arcs, pass_differences: PassDifferences) -> Details:
     path, difference = hit.trace.path, pass_differences.found[hit.row]
-    other = difference.other
+    other, (first, last) = difference.other, (hit.line(row) for row in (difference.first, difference.last))
     return {
         "difference": None if difference.is_missing else abs(path.end[hit.row] - path.end[other]),
         "other_line": hit.line(other),
         "pass_difference": f"a block as in line {hit.line(other)} is missing before this one"
         if difference.is_missing
-        else _difference(hit, arcs, other),
-        "other_pass": f"lines {hit.line(difference.first)} to {hit.line(difference.last)}",
+        else _difference(hit, arcs, difference),
+        "alike": "as in" if difference.beside is None else "as far from",
+        "other_pass": f"lines {first} to {last}" if last > first else f"line {first}",
     }
 
 
-def _difference(hit: Hit, arcs: Arcs, other: int) -> str:
+def _difference(hit: Hit, arcs: Arcs, difference: Difference) -> str:
     """What is other in a row than in that of another pass."""
     from polarcheck.rules.wording.arcs import written_arc
 
-    trace, row, line = hit.trace, hit.row, hit.line(other)
+    trace, row, other, line = hit.trace, hit.row, difference.other, hit.line(difference.other)
+    side, its_side = (trace.compensation.side[at] for at in (row, other))
+    if side != its_side:
+        return f"G{side} stands here, and G{its_side} in line {line}"
     here, there = (complex(trace.path.end[at]) for at in (row, other))
+    if difference.beside is not None:
+        beside = difference.beside
+        distance, place = hit.length(beside.offset), hit.point_off_center(beside.place)
+        end = hit.point_off_center(here)
+        return f"this block ends at {end}, and not {distance} beside that of line {line}, at {place}"
     if abs(here - there) > _APART:
         ends = hit.point_off_center(here), hit.point_off_center(there)
         return f"this block ends at {ends[0]}, line {line} at {ends[1]}"
