@@ -137,49 +137,43 @@ class AirCuts(Columns, frozen=True):
     def _lowest(self) -> Floats:
         return self._of_section(self.trace.path.z, self.walls, np.minimum, np.inf)
 
+    @cached_property
+    def _idle_behind(self) -> Mask:
+        """Rows behind which the next Z word, the retract in the mode or behind it, stands alone and moves nowhere."""
+        trace = self.trace
+        idle = (np.abs(trace.path.z - trace.path.z_before) <= ROUNDING) & ~trace.axes.moves_plane
+        words = np.flatnonzero(trace.axes.commands_z)
+        follows = np.append(words, -1)[np.searchsorted(words, np.arange(len(trace)), side="right")]
+        return np.asarray(idle[follows] & (follows >= 0))
+
     @property
     def _depth_missing(self) -> Mask:
-        """
-        Z stays at its entry above Z0, nothing of Z is written before the cuts, and a Z word alone behind them, the
-        retract in the mode or behind it, moves nowhere.
-        """
+        """Z stays at its entry above Z0, nothing of Z is written before the cuts, and the retract moves nowhere."""
         trace = self.trace
         inside = trace.mode.in_polar
         still = ~trace.mode.anywhere_in_section(inside & (np.abs(trace.path.z - self._entry) > ROUNDING))
         rows = np.arange(len(trace), dtype=np.float64)
         first = self._of_section(rows, self.walls, np.minimum, np.inf)
-        last = self._of_section(rows, self.walls, np.maximum, -np.inf)
-        writes_z = inside & trace.axes.commands_z
-        alone = writes_z & ~trace.axes.moves_plane & (rows > last)
-        earlier = trace.mode.anywhere_in_section(writes_z & (rows < first))
+        last = self._of_section(rows, self.walls, np.maximum, -1).astype(np.int64)
+        earlier = trace.mode.anywhere_in_section(inside & trace.axes.commands_z & (rows < first))
         near = (self._entry > _ABOVE) & (self._entry < _FARTHEST)
-        behind = self._behind(trace.axes.commands_z)
-        idle = (behind >= 0) & (np.abs(trace.path.z[behind] - trace.path.z_before[behind]) <= ROUNDING)
-        idle &= ~trace.axes.moves_plane[behind]
-        retracts = trace.mode.anywhere_in_section(alone) | np.append(idle, False)[trace.mode.section]
-        return np.asarray(still & near & retracts & ~earlier)
+        return np.asarray(still & near & self._idle_behind[last] & ~earlier)
 
     @property
     def _depth_of_pass_missing(self) -> Mask:
         """
-        Without compensation the cut stands at the entry of its section above Z0, the section cuts the same way at the
-        same F below, and the Z word alone behind it moves nowhere.
+        Without compensation the cut stands at the entry of its section above Z0, the retract moves nowhere, and the
+        section cuts the same way at the same F below.
         """
-        trace = self.trace
-        path, section, mask = trace.path, trace.mode.section, np.zeros(len(trace), bool)
-        still = np.abs(path.z - path.z_before) <= ROUNDING
-        words = np.flatnonzero(trace.axes.commands_z)
-        follows = np.append(words, -1)[np.searchsorted(words, np.arange(len(trace)), side="right")]
-        idle = (still & trace.mode.in_polar & ~trace.axes.moves_plane)[follows] & (follows >= 0)
-        high = self.walls & still & idle & (path.z > _ABOVE) & (path.z >= self._entry - ROUNDING)
-        if not (high & ~trace.compensation.compensates).any():
-            return mask
-        rows = np.flatnonzero(self.walls)
+        trace, path, section = self.trace, self.trace.path, self.trace.mode.section
+        high = self.walls & self._idle_behind & (path.z > _ABOVE) & (path.z >= self._entry - ROUNDING)
+        high &= ~trace.compensation.compensates & ~path.moves_z
+        rows, mask = np.flatnonzero(self.walls), np.zeros(len(trace), bool)
         ways = np.stack([path.start[rows], path.end[rows], np.nan_to_num(path.center[rows])], axis=1)
-        for row in np.flatnonzero(high & ~trace.compensation.compensates).tolist():
+        for row in np.flatnonzero(high).tolist():
             same = np.abs(ways - ways[np.searchsorted(rows, row)]).max(axis=1) <= _SAME
             same &= (section[rows] == section[row]) & (trace.feedrate.feed[rows] == trace.feedrate.feed[row])
-            mask[row] = bool((path.z[rows[same]] < min(path.z[row], 0.0) - _ABOVE).any())
+            mask[row] = bool((path.z[rows[same]] < -_ABOVE).any())
         return mask
 
     @property
