@@ -345,6 +345,9 @@ def _lines(order: Rows, row: Rows, start: Points, end: Points, phase: NDArray[np
 
 
 def _merged(*parts: _Moves) -> _Moves:
-    """All moves in the order in which they are run."""
+    """All moves in the order in which they are run; those of each part are in it."""
+    present = [part for part in parts if len(part)]
+    if len(present) == 1:
+        return present[0]
     moves = _Moves.concatenated(parts)
     return moves[np.argsort(moves.order, kind="stable")]

@@ -106,10 +106,14 @@ class _Joints(msgspec.Struct, frozen=True):
 
 def _join(vectors: Vectors, programmed: Programmed, method: Method) -> None:
     """Fill in the vectors where a move goes on into the next one (FANUC 16/18-C lathe manual p. 224-232)."""
+    joins = (programmed.on & programmed.has_next & ~programmed.cancelled & programmed.known)[:-1]
+    joins &= programmed.known[1:] & (programmed.radius[:-1] > 0)
+    if not joins.any():  # R is 0 or not known: each move ends perpendicular
+        return
     slanted = _is_slanted(programmed)
     corners = _corners(programmed, slanted)
     turned = turn(corners)
-    joints = _joints(programmed, corners, turned, slanted, method)
+    joints = _joints(programmed, joins, corners, turned, slanted, method)
 
     by_arc, by_curves = _other_corners(programmed, turned, joints, method)
     point = meeting(corners, turned, joints.meets | by_curves)
@@ -166,15 +170,15 @@ def _leads_on(corners: Corners, point: Points) -> Mask:
     return np.asarray(np.isfinite(point) & (ahead.real >= -ROUNDING) & (before_next.real >= -ROUNDING))
 
 
-def _joints(programmed: Programmed, corners: Corners, turned: Points, slanted: Mask, method: Method) -> _Joints:
+def _joints(
+    programmed: Programmed, joins: Mask, corners: Corners, turned: Points, slanted: Mask, method: Method
+) -> _Joints:
     """Sort the junctions; a radius of zero leaves the one perpendicular vector, of no length."""
     on, is_arc = programmed.on, programmed.is_arc
-    joins = (on & programmed.has_next & ~programmed.cancelled & programmed.known)[:-1] & programmed.known[1:]
-    joins &= corners.radius > 0
     # The manuals take the intersection of the two paths where there is one (FANUC 15i B-63324EN p. 405), builders ask
     # to cancel first: perpendicular to both moves is what controls do without an intersection, and is always near.
     changes = joins & on[1:] & (programmed.side[1:] != programmed.side[:-1])
-    joins &= ~changes
+    joins = joins & ~changes
 
     ramps_on = (~programmed.before_on & ~is_arc)[:-1]
     ramps_off = (~on & ~is_arc)[1:]
