@@ -3,12 +3,25 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from polarcheck.columns.path.path import NOWHERE
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, States, cached_property, is_among, mask_at
+from polarcheck.foundation.arrays import (
+    Floats,
+    Mask,
+    Points,
+    Rows,
+    States,
+    cached_property,
+    is_among,
+    mask_at,
+    repeated,
+)
 from polarcheck.foundation.states import ArcFeed, Motion
 from polarcheck.geometry import polar, rates
 from polarcheck.geometry.cutter_compensation import offset_path
@@ -50,11 +63,13 @@ class Moves(PlanePath, frozen=True, dict=True):
     @cached_property
     def way(self) -> Floats:
         """Distance along which F is measured [mm]: on the plane, or in space."""
-        return np.hypot(self.length, self.rise)
+        return np.hypot(self.length, self.rise) if self.rise.any() else self.length
 
     @cached_property
     def plane_share(self) -> Floats:
         """Share of F with which the tool center moves on the plane: 1 unless F measures Z, too, or the contour."""
+        if not self.rise.any():
+            return self.arc_share
         return self.arc_share * np.divide(self.length, self.way, out=np.ones(len(self)), where=self.rise != 0)
 
     @cached_property
@@ -65,32 +80,32 @@ class Moves(PlanePath, frozen=True, dict=True):
     @cached_property
     def nearest(self) -> Floats:
         """L, smallest distance of the tool center to the center of C [mm]; NaN where it is not known."""
-        return np.where(self.known, polar.nearest(*self.shape), np.nan)
+        return self._where_known(polar.nearest)
 
     @cached_property
     def farthest(self) -> Floats:
         """Largest distance of the tool center to the center of C [mm]; NaN where it is not known."""
-        return np.where(self.known, polar.farthest(*self.shape), np.nan)
+        return self._where_known(polar.farthest)
 
     @cached_property
     def c_feed(self) -> Floats:
         """Highest rate of C on the way [deg/min]; NaN where feed, radius or position is not known."""
-        return np.where(self.known, rates.c_feed(*self.shape, self.plane_feed), np.nan)
+        return self._where_known(rates.c_feed, self.plane_feed)
 
     @cached_property
     def c_acceleration(self) -> Floats:
         """Highest acceleration of C on the way [deg/s2]."""
-        return np.where(self.known, rates.c_acceleration(*self.shape, self.plane_feed), np.nan)
+        return self._where_known(rates.c_acceleration, self.plane_feed)
 
     @cached_property
     def x_feed(self) -> Floats:
         """Highest rate of X on the way [mm/min, radius]; NaN where feed, radius or position is not known."""
-        return np.where(self.known, rates.x_feed(*self.shape, self.plane_feed), np.nan)
+        return self._where_known(rates.x_feed, self.plane_feed)
 
     @cached_property
     def x_acceleration(self) -> Floats:
         """Highest acceleration of X on the way [mm/s2, radius]."""
-        return np.where(self.known, rates.x_acceleration(*self.shape, self.plane_feed), np.nan)
+        return self._where_known(rates.x_acceleration, self.plane_feed)
 
     @cached_property
     def is_of_tool(self) -> Mask:
@@ -110,8 +125,17 @@ class Moves(PlanePath, frozen=True, dict=True):
     def feed_allowed(self, limit: float | Floats) -> Floats:
         """Highest F that keeps C at or below the limit [mm/min]."""
         with np.errstate(divide="ignore", invalid="ignore"):  # Z alone moves: nothing turns C
-            allowed = rates.feed_allowed(*self.shape, limit) / self.plane_share
-        return np.where(self.known, allowed, np.nan)
+            return self._where_known(rates.feed_allowed, np.broadcast_to(limit, len(self))) / self.plane_share
+
+    def _where_known(self, function: Callable[..., Floats], *columns: Floats) -> Floats:
+        """Return a function of the shape and columns of each move; NaN where the path of the tool is not known."""
+        known = np.flatnonzero(self.known)
+        if 2 * len(known) > len(self):
+            return np.where(self.known, function(*self.shape, *columns), np.nan)
+        values = np.full(len(self), np.nan)
+        of_known: list[NDArray[Any]] = [*self.shape, *columns]
+        values[known] = function(*(column[known] for column in of_known))
+        return values
 
 
 def z_along(trace: Trace, moves: Moves) -> tuple[Floats, Floats]:
@@ -140,16 +164,16 @@ def _shares_of_block(row: Rows, length: Floats) -> tuple[Mask, Floats, Floats]:
     return begins, np.where(begins, 0.0, np.append(0.0, after[:-1])[: len(row)]), after
 
 
-def rise_of(trace: Trace, row: Rows, length: Floats) -> Floats:
+def _rise(trace: Trace, row: Rows, path: PlanePath) -> Floats:
     """
     Distance of Z beside moves of these rows [mm], where F measures it; 0 elsewhere, NaN where Z is not known.
 
-    length: their ways on the plane [mm]; a block of several moves shares its Z out by them, as z_along does.
+    A block of several moves shares its Z out by their ways on the plane, as z_along does.
     """
     rises = trace.path.rise[row]
     if not rises.any():
-        return rises
-    _, from_share, to_share = _shares_of_block(row, length)
+        return repeated(np.float64(0), len(row))
+    _, from_share, to_share = _shares_of_block(row, path.length)
     return np.asarray(rises * (to_share - from_share))
 
 
@@ -187,11 +211,11 @@ def programmed_moves(trace: Trace) -> Moves:
         section=trace.mode.section[row],
         feed=trace.feedrate.feed[row],
         rise=trace.path.rise[row],
-        arc_share=np.ones(len(row)),
+        arc_share=repeated(np.float64(1), len(row)),
         known=~np.isnan(end - start),
         phase=np.zeros(len(row), np.int16),
         corner=np.zeros(len(row), bool),
-        allowance=np.zeros(len(row)),
+        allowance=repeated(np.float64(0), len(row)),
         entry=trace.path.section_entry,
         c_axis=trace.path.c_axis,
     )
@@ -257,12 +281,12 @@ def of_tool(trace: Trace, tool: offset_path.ToolPath, row: Rows) -> Moves:
         row=rows,
         section=trace.mode.section[rows],
         feed=trace.feedrate.feed[rows],
-        rise=rise_of(trace, rows, tool.length),
+        rise=_rise(trace, rows, tool),
         arc_share=_arc_share(trace, tool, rows),
         known=tool.known,
         phase=tool.phase,
         corner=tool.corner,
-        allowance=np.zeros(len(rows)),
+        allowance=repeated(np.float64(0), len(rows)),
         entry=trace.path.section_entry,
         c_axis=trace.path.c_axis,
     )
@@ -271,9 +295,9 @@ def of_tool(trace: Trace, tool: offset_path.ToolPath, row: Rows) -> Moves:
 def _arc_share(trace: Trace, tool: offset_path.ToolPath, row: Rows) -> Floats:
     """Share of F with which the tool center runs along arcs where F is that of the contour: R of its arc by that."""
     where = trace.modal.state("arc_feed")[row]
-    share = np.ones(len(row))
     if not where.any():
-        return share
+        return repeated(np.float64(1), len(row))
+    share = np.ones(len(row))
     of_contour = np.abs(trace.path.start - trace.path.center)[row]
     of_center = np.abs(tool.start - tool.center)
     arcs = (where != ArcFeed.CENTER) & is_among(tool.kind, (Motion.CW, Motion.CCW)) & ~tool.corner & (of_contour > ZERO)
