@@ -278,6 +278,8 @@ def _unknown_columns(tables: Tables, rule: Rule) -> Iterator[Missing]:
     where = where & trace.mode.is_followed & ~trace.compensation.sides_are_open
     for kind, (need, column) in enumerate(columns.items()):
         rows = np.flatnonzero(np.isnan(column) & where)
+        if not len(rows):
+            continue
         if need == "rate":
             rows = rows[~(tables["feeds"].missing | tables["feeds"].lost)[rows]]  # these have a finding already
         cause = cause_of(trace, need, rows)

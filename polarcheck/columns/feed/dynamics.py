@@ -63,9 +63,13 @@ class Dynamics:
     def __init__(self, trace: Trace, tool_center: ToolCenter) -> None:
         self.trace = trace
         self.tool_center = tool_center
-        self.moves: Moves = tool_center.moves
 
     # ---- the moves of the tool center ----
+
+    @property
+    def moves(self) -> Moves:
+        """The moves of the tool center."""
+        return self.tool_center.moves
 
     @cached_property
     def at_feed(self) -> Mask:

@@ -128,7 +128,7 @@ class CalledTools(Columns, frozen=True):
         names_offset[self.run.row[index]] = is_long
         return fill_down(names_offset, self.blocks.has("T") | self.blocks.starts, False).astype(bool)
 
-    @cached_property
+    @property
     def _plain_offset(self) -> Rows:
         """Number of the offset with R as the digits of T name it, which is that of the tool unless T names another."""
         named = self._t // (10**_TOOL_DIGITS * self._most_plain) % self._most_plain

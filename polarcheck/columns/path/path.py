@@ -552,7 +552,7 @@ class ProgrammedPath(Columns, frozen=True):
         """The programmed moves of these rows."""
         return PlanePath(self.start[rows], self.end[rows], self.center[rows], self.axes.motion[rows])
 
-    @cached_property
+    @property
     def c_words(self) -> tuple[Floats, Floats]:
         """C of the words outside the mode [deg]: coordinates, NaN where none, and increments, 0 where none."""
         axis, increment = self.machine.polar.rotary_words
