@@ -14,7 +14,7 @@ from polarcheck.checking.called_files import in_call
 from polarcheck.checking.suppression import allowed
 from polarcheck.columns.trace import Trace
 from polarcheck.columns.words.allow_mention import Used
-from polarcheck.foundation.arrays import Floats, Mask, Rows, cached_property, is_uniform, repeated
+from polarcheck.foundation.arrays import Floats, Mask, Rows, cached_property, different, is_uniform, repeated
 from polarcheck.foundation.errors import TooHardError
 from polarcheck.foundation.finding import NOTE, SEVERITIES, Finding, NotEvaluated, Severity, Silenced, Undecided
 from polarcheck.foundation.time_limit import keep_going
@@ -337,7 +337,8 @@ class Engine:
             order = np.lexsort((-np.arange(len(index)), worst[index], group))
             first = order[np.cumsum(count) - 1]
         if rule.once:
-            count = np.bincount(np.unique(np.stack((group, block)), axis=1)[0], minlength=len(first))
+            blocks = int(block.max(initial=0)) + 1
+            count = np.bincount(different(group * blocks + block) // blocks, minlength=len(first))
         order = np.argsort(first, kind="stable")
         return first[order], np.argsort(order)[group], count[order]
 

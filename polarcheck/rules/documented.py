@@ -2,10 +2,18 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable
 from typing import Any
 
 import msgspec
+
+
+@functools.cache  # each finding of a rule names the source that the page cites
+def _page_of(function: Callable[..., Any]) -> str:
+    import inspect
+
+    return inspect.getdoc(function) or ""
 
 
 class Documented(msgspec.Struct, frozen=True):
@@ -17,9 +25,7 @@ class Documented(msgspec.Struct, frozen=True):
     @property
     def page(self) -> str:
         """The manual page: the docstring."""
-        import inspect
-
-        return inspect.getdoc(self.function) or ""
+        return _page_of(self.function)
 
     @property
     def title(self) -> str:

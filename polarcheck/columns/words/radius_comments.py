@@ -9,6 +9,7 @@ import numpy as np
 
 from polarcheck.columns.modes.tools import CalledTools
 from polarcheck.columns.words.comments import Comments, named_tool
+from polarcheck.foundation.arrays import is_among
 
 #: A longer number calls nothing.
 _LARGEST_T = 1e15
@@ -54,7 +55,7 @@ def radii(comments: Comments, tools: CalledTools) -> dict[int, StatedRadius]:
     of_block: dict[int, list[str]] = {}
     of_tool: dict[int, str] = {}
     block_of_comment = comments.text.comments.block
-    is_near = np.isin(block_of_comment, np.concatenate((called - 1, called, called + 1)))
+    is_near = is_among(block_of_comment, np.concatenate((called - 1, called, called + 1)).tolist())
     for number in np.flatnonzero(is_near | comments.may_name_tool).tolist():
         comment = comments.written(number).strip("();% ")
         of_block.setdefault(int(block_of_comment[number]), []).append(comment)

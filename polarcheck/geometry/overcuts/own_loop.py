@@ -29,8 +29,9 @@ from polarcheck.geometry.tolerances import ZERO
 TOLERANCE = 0.002
 #: From this number of moves, or chords of them, a loop is searched for repeated passes.
 _MANY = 2000
-#: Chords of a loop that are compared as one line; points of lines between two checks of the time limit.
-_LONG_RUN, _PIECES = 1024, 2048
+#: Chords of a loop that are compared as one line, those of them that are compared first; points of lines between two
+#: checks of the time limit.
+_LONG_RUN, _SAMPLE, _PIECES = 1024, 8, 2048
 
 
 def overcuts(
@@ -166,17 +167,22 @@ def _comes_close(walls: Segments, chords: Segments, repeated: Mask, is_ramp: Mas
         near, loop_of_chord = np.zeros(len(path_loops), bool), number
         path, number = path[~repeated[~is_ramp]], number[~repeated[~is_ramp]]
         run = np.cumsum((np.diff(number, prepend=-1) != 0) | (np.arange(len(number)) % _LONG_RUN == 0))
-        lines, loop_of_line = polylines(path.start, path.end, run), number[np.diff(run, prepend=0) != 0]
-        # A loop is decided by its first close line. A long loop that stays away takes long.
-        share = np.cumsum(shapely.get_num_coordinates(lines)) // _PIECES
-        for part in np.split(np.arange(len(loop_of_line)), np.flatnonzero(np.diff(share)) + 1):
-            keep_time()
-            undecided = part[~near[loop_of_line[part]]]
-            loop_number = loop_of_line[undecided]
-            close = shapely.dwithin(
-                contours[np.searchsorted(loops, path_loops[loop_number])], lines[undecided], smallest[loop_number]
-            )
-            near[loop_number[close]] = True
+        # A loop is decided by its first close line: a few chords of each decide most long loops that come close at all.
+        index = np.arange(len(number))
+        is_sample = (index % _LONG_RUN < _SAMPLE) & (np.bincount(number)[number] >= _LONG_RUN)
+        for chosen in (np.flatnonzero(is_sample), index):
+            chosen = chosen[~near[number[chosen]]]
+            lines = polylines(path.start[chosen], path.end[chosen], run[chosen])
+            loop_of_line = number[chosen][np.diff(run[chosen], prepend=0) != 0]
+            share = np.cumsum(shapely.get_num_coordinates(lines)) // _PIECES
+            for part in np.split(np.arange(len(loop_of_line)), np.flatnonzero(np.diff(share)) + 1):
+                keep_time()
+                undecided = part[~near[loop_of_line[part]]]
+                loop_number = loop_of_line[undecided]
+                close = shapely.dwithin(
+                    contours[np.searchsorted(loops, path_loops[loop_number])], lines[undecided], smallest[loop_number]
+                )
+                near[loop_number[close]] = True
         result[~is_ramp] = near[loop_of_chord]
     return result
 
