@@ -262,6 +262,16 @@ def test_programs_without_sections_are_compared() -> None:
         assert comparison(TURNING, changed(slip, program=TURNING)).verdict == DIFFERS, slip
 
 
+@looped("words", ["G13.1 M9", "G13.1 G0 Z50.", "G13.1 T0202", "G13.1 S500"])
+@looped("tail", ["G0 X100. Z60.\nM30\n", "M30\n"])
+def test_what_stands_beside_the_end_of_a_section_is_compared(words: str, tail: str) -> None:
+    program = f"O1\nT0101\nG98 G0 X70. Z2. C0\n{SECTION.format(angle=0, depth=5)}{tail}"
+    result = comparison(program, program.replace("G13.1", words))
+    assert result.verdict == DIFFERS
+    assert result.outside, text(result)
+    assert comparison(program, program.replace("G13.1", "N5 G13.1")).verdict == SAME_WORDS
+
+
 @pytest.mark.ci
 def test_arcs_outside_of_sections() -> None:
     program = "O1\nG21 G99\nT0101\nG0 X50. Z2.\n{}\nM30\n"

@@ -182,7 +182,9 @@ def angles_not_known(trace: Trace) -> Iterator[tuple[str, int]]:
     known = ~np.isnan(trace.path.c_angle)
     follows = np.append(False, known[:-1]) & ~known
     lost = fill_down(np.where(follows, np.arange(len(trace)), -1), follows | trace.blocks.starts, -1)[enter]
-    for row, count in Counter(lost[(lost >= 0) & trace.run.unknown[lost]].tolist()).items():
+    # Blocks that are not simulated are named by themselves.
+    named = np.isin(trace.run.block[lost], [remark.block for remark in trace.run.remarks])
+    for row, count in Counter(lost[(lost >= 0) & trace.run.unknown[lost] & ~named].tolist()).items():
         axis = trace.machine.polar.rotary_address
         yield f"{axis} at the beginning of a section {_after_unexecuted(trace, row, axis)}", count
 

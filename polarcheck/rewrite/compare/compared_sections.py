@@ -18,6 +18,7 @@ from polarcheck.geometry import polar
 from polarcheck.geometry.plane_path import SpacePath
 from polarcheck.rewrite.compare.orders import Step, special_rows
 from polarcheck.rewrite.compare.terms import Terms
+from polarcheck.rules.repair import FEED, WAY, Z
 from polarcheck.rules.wording.offsets import called_tool, to_give
 
 #: Angles less than this below a full turn count as 0 [deg].
@@ -40,7 +41,7 @@ class Stretch(msgspec.Struct, frozen=True):
     knows_z: Z is written anywhere; always True outside.
     c_scale: outside sections the length that stands for one degree of C in the path.
     is_rewritten: C is compared at feed only.
-    needs: why the path is not known; empty if it is.
+    needs: why a move is not known; empty if all are.
     as_programmed: why the path is the programmed one, as R is missing; empty if it is that of the tool center.
     """
 
@@ -58,21 +59,28 @@ class Stretch(msgspec.Struct, frozen=True):
     needs: str = ""
     as_programmed: str = ""
 
+    @property
+    def known(self) -> Stretch:
+        """The same with its known moves alone."""
+        is_known = self.path.is_known
+        if is_known.all():
+            return self
+        columns = {name: getattr(self, name)[is_known] for name in ("path", "row", "rapid", "feed_mode", "feed")}
+        return msgspec.structs.replace(self, **columns)
 
-def of_sections(
-    trace: Trace, tool_center: ToolCenter, steps: Sequence[Step], *, is_feed_on_plane: bool = False
-) -> list[Stretch]:
+
+def of_sections(trace: Trace, tool_center: ToolCenter, steps: Sequence[Step], terms: Terms) -> list[Stretch]:
     """
-    Return the polar sections in order.
+    Return the polar sections in order, without what may change.
 
-    is_feed_on_plane: compare the speed of the tool center on the plane instead of the programmed F. They differ where F
-    is along the contour, or along X, C and Z.
+    The speed of the tool center on the plane differs from F where F is along the contour, or along X, C and Z.
     """
     if not len(trace.mode.sections):
         return []
     of_tool, _ = with_z_alone(trace, tool_center.moves)
     plain, _ = with_z_alone(trace, programmed_moves(trace))
     steps_of = _by_section(trace, steps)
+    of_tool, plain = (_without_changes(trace, moves, terms) for moves in (of_tool, plain))
     result = []
     for number in range(len(trace.mode.sections)):
         low, high = np.searchsorted(of_tool.section, (number, number + 1)).tolist()
@@ -90,10 +98,21 @@ def of_sections(
             line = int(trace.blocks.line_in_file[moves.row[np.argmin(path.is_known)]])
             needs = f"a position of line {line} is not known"
         rows = np.flatnonzero(trace.mode.section == number)
-        section = _stretch(trace, number, rows, path, moves.row, steps_of.get(number, ()), needs)
-        feed = section.feed * moves.plane_share if is_feed_on_plane else section.feed
+        section = _stretch(trace, number, rows, path, moves.row, steps_of.get(number, ()), terms, needs)
+        feed = section.feed * moves.plane_share if terms.is_rewritten else section.feed
         result.append(msgspec.structs.replace(section, as_programmed=as_programmed, knows_z=knows_z, feed=feed))
     return result
+
+
+def _without_changes(trace: Trace, moves: Moves, terms: Terms) -> Moves:
+    """Return the moves without those whose way may change, and without Z alone where Z may."""
+    if not terms.changes:
+        return moves
+    rows = np.unique(moves.row)
+    changed = np.flatnonzero(terms.may_change(trace, WAY)[rows])
+    may_change = np.isin(moves.row, rows[np.union1d(changed, np.maximum(changed - 1, 0))])
+    is_z_alone = (moves.start == moves.end) & ~moves.is_arc
+    return moves[~(may_change | (is_z_alone & terms.may_change(trace, Z)[moves.row]))]
 
 
 def _by_section(trace: Trace, steps: Sequence[Step]) -> dict[int, list[Step]]:
@@ -110,16 +129,25 @@ def _stretch(
     path: SpacePath,
     row: Rows,
     steps: Sequence[Step],
+    terms: Terms,
     needs: str = "",
 ) -> Stretch:
     per_minute = trace.feedrate.feed_mode[row] == FeedMode.PER_MINUTE
     feed = np.where(per_minute, trace.feedrate.feed[row], trace.feedrate.feed_number[row])
+    rapid = trace.axes.motion[row] == Motion.RAPID
+    if terms.changes:
+        may_change = terms.may_change(trace, FEED)[row]
+        feed, rapid = np.where(may_change, np.nan, feed), rapid & ~may_change
+        if section >= 0:
+            is_level = terms.may_change(trace, Z)[row]
+            z_start, z_end = (np.where(is_level, 0.0, z) for z in (path.z_start, path.z_end))
+            path = msgspec.structs.replace(path, z_start=z_start, z_end=z_end)
     return Stretch(
         section=section,
         rows=rows,
         path=path,
         row=row,
-        rapid=trace.axes.motion[row] == Motion.RAPID,
+        rapid=rapid,
         feed_mode=trace.feedrate.feed_mode[row],
         feed=feed,
         steps=steps,
@@ -154,6 +182,9 @@ def outside(trace: Trace, steps: Sequence[Step], rows: Rows, terms: Terms) -> St
     row = rows[moving & ~is_left_out]
     starts, path = trace.blocks.starts, trace.path
     columns = [(before(column, starts, np.nan)[row], column[row]) for column in (path.x, path.z, path.c_angle)]
+    # At its end in a section X counts on the plane; the mode is left with X where the machine stands.
+    left = np.flatnonzero(before(trace.mode.section, starts, -1)[row] >= 0)
+    columns[0][0][left] = np.abs(path.end[row[left] - 1])
     needs = ""
     written = (("X", "U"), ("Z", "W"), trace.machine.polar.rotary_words)
     for (_, after), words in zip(columns, written, strict=True):
@@ -186,7 +217,8 @@ def outside(trace: Trace, steps: Sequence[Step], rows: Rows, terms: Terms) -> St
     kind = np.where(np.isnan(center), Motion.LINE, kind).astype(np.int16)
     of_stretch = SpacePath(start, end, center, kind, c_from * scale, c_to * scale)
     rows_kept = set(rows[~is_left_out].tolist())
-    stretch = _stretch(trace, -1, rows, of_stretch, row, [step for step in steps if step.row in rows_kept], needs)
+    steps = [step for step in steps if step.row in rows_kept]
+    stretch = _stretch(trace, -1, rows, of_stretch, row, steps, terms, needs)
     return msgspec.structs.replace(stretch, c_scale=scale, is_rewritten=terms.is_rewritten)
 
 

@@ -102,9 +102,6 @@ def _unknown_items(tables: Tables, left_out: Collection[int]) -> list[tuple[str,
 
 def why_not(old: Part, new: Part) -> str:
     """Return why two sections cannot be compared; empty if they can."""
-    for name, part in (("old", old), ("new", new)):
-        if part.stretch.needs:
-            return f"{name}: {part.stretch.needs}"
     known = {
         "Z": [part.stretch.knows_z for part in (old, new)],
         "C at its beginning": [_knows_entry(part) for part in (old, new)],

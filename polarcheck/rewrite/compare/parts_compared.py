@@ -24,25 +24,33 @@ class Measured(msgspec.Struct, frozen=True):
     """
     Two parts compared.
 
-    reason: why they were not compared; empty if they were. deviation: of their paths, None where none was measured.
+    reason: why they were not compared; empty if they were. not_known: what is not known in both, and therefore left out
+    of their paths; empty if nothing is. deviation: of their paths, None where none was measured.
     length: the largest deviation [mm], without the share of C outside sections. differences: what differs.
     """
 
     reason: str = ""
+    not_known: str = ""
     deviation: PathDeviation | None = None
     length: float = 0.0
     differences: Sequence[Difference] = ()
 
 
 def measured(old: Part, new: Part, terms: Terms) -> Measured:
-    """Compare two parts whose paths are known."""
+    """Compare two parts. Moves that are not known in both are left out; those of one alone are a reason not to."""
     has_other_moves = terms.has_other_moves and old.stretch.section >= 0
+    not_known = [f"{name}: {part.stretch.needs}" for name, part in (("old", old), ("new", new)) if part.stretch.needs]
+    counts = [np.count_nonzero(~part.stretch.path.is_known) for part in (old, new)]
+    if not_known and (len(not_known) < len((old, new)) or counts[0] != counts[1]):
+        return Measured(not_known[0])
+    old, new = (Part(part.trace, part.stretch.known) for part in (old, new))
     try:
         deviation = None if has_other_moves else deviation_of(old, new, terms.tolerance)
     except TooHardError as error:
         return Measured(str(error))
-    differing = [*differences(old, new, deviation, terms), *([] if has_other_moves else _points(old, new))]
-    return Measured("", deviation, length_of(old, deviation), differing)
+    has_points = not (has_other_moves or terms.changes)
+    differing = [*differences(old, new, deviation, terms), *(_points(old, new) if has_points else ())]
+    return Measured("", not_known[0] if not_known else "", deviation, length_of(old, deviation), differing)
 
 
 def outside_compared(
@@ -53,12 +61,8 @@ def outside_compared(
         radius = abs(float(traces[0].path.x_before[rows[0][0]]))
         angle = math.degrees(2 * terms.tolerance / radius) if radius > terms.tolerance else 0.0
         terms = msgspec.structs.replace(terms, angle=max(terms.angle, angle))
-    of_new = msgspec.structs.replace(terms, left_out=())
-    old = Part(traces[0], outside(traces[0], steps[0], rows[0], terms))
-    new = _turned_to(old, Part(traces[1], outside(traces[1], steps[1], rows[1], of_new)))
-    for name, part in (("old", old), ("new", new)):
-        if part.stretch.needs:
-            return Measured(f"{name}: {part.stretch.needs}")
+    old = Part(traces[0], outside(traces[0], steps[0], rows[0], terms.of_old))
+    new = _turned_to(old, Part(traces[1], outside(traces[1], steps[1], rows[1], terms.of_new)))
     return measured(old, new, terms)
 
 

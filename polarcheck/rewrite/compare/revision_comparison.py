@@ -73,13 +73,19 @@ def default_tolerance(old: Revision, new: Revision) -> float:
 
 def compared(old: Revision, new: Revision, terms: Terms) -> Comparison:
     """Compare two revisions."""
-    is_same_machine = old.trace.machine == new.trace.machine
-    runs = [_Runs(*pair, is_same_machine, terms) for pair in _pairs_of_runs(old, new)]
+    pairs = list(pairs_of_runs(old, new))
+    runs = [RunPair(*pair, terms) for pair in pairs]
     sections = [section for run in runs for section in run.sections()]
     between = [difference for run in runs for difference in run.outside()]
-    reasons = sorted((reason for run in runs for reason in run.not_compared), key=lambda reason: not reason.matters)
+    reasons = [
+        reason
+        for pair, run in zip(pairs, runs, strict=True)
+        for reason in (*incomparable(pair, terms), *run.not_compared)
+    ]
+    reasons.sort(key=lambda reason: not reason.matters)
     missing = list({reason.reason: reason for reason in reversed(reasons)}.values())[::-1]
-    same_words = is_same_machine and old.trace.job == new.trace.job and has_same_words(old.trace, new.trace)
+    is_same_setup = old.trace.machine == new.trace.machine and old.trace.job == new.trace.job
+    same_words = is_same_setup and has_same_words(old.trace, new.trace)
     differs = bool(between) or any(section.change not in ("same", "not compared") for section in sections)
     verdict = SAME_METAL
     if any(run.is_broken_off for run in runs):
@@ -117,7 +123,7 @@ def _program(revision: Revision) -> Program:
     return Program(revision.path, revision.machine, len(trace), len(trace.mode.sections))
 
 
-def _pairs_of_runs(old: Revision, new: Revision) -> Iterator[tuple[Tables, Tables]]:
+def pairs_of_runs(old: Revision, new: Revision) -> Iterator[tuple[Tables, Tables]]:
     """Yield pairs of runs of the same channel and state of block skip; a file without / has one run for both states."""
     channels = [_by_channel(revision) for revision in (old, new)]
     names = list(dict.fromkeys([*channels[0], *channels[1]]))
@@ -135,26 +141,27 @@ def _by_channel(revision: Revision) -> dict[str, dict[str, Tables]]:
     return channels
 
 
-class _Runs:
+class RunPair:
     """Compares one run of each revision."""
 
-    def __init__(self, old: Tables, new: Tables, is_same_machine: bool, terms: Terms) -> None:
+    def __init__(self, old: Tables, new: Tables, terms: Terms) -> None:
         self._tables = old, new
         self._terms = terms
-        self._is_same_machine = is_same_machine
         self._traces: tuple[Trace, Trace] = old["trace"], new["trace"]
-        old_steps, new_steps = (steps(trace, is_same_machine=is_same_machine) for trace in self._traces)
-        self._steps = old_steps, new_steps
-        self._old, self._new = (
-            of_sections(trace, tables["tool_center"], steps, is_feed_on_plane=terms.is_rewritten)
-            for trace, tables, steps in zip(self._traces, self._tables, self._steps, strict=True)
+        self._is_same_machine = is_same_machine = self._traces[0].machine == self._traces[1].machine
+        old_steps, new_steps = (
+            steps(trace, is_same_machine=is_same_machine, with_sides=not terms.changes) for trace in self._traces
         )
+        self._steps = old_steps, new_steps
+        self._old = of_sections(self._traces[0], old["tool_center"], old_steps, terms.of_old)
+        self._new = of_sections(self._traces[1], new["tool_center"], new_steps, terms.of_new)
         is_in_order = terms.is_kept and len(self._old) == len(self._new)
         numbers = np.arange(len(self._old))
         self._partner, self._ordered = (numbers, numbers) if is_in_order else paired(self._old, self._new)
         #: Largest deviations [mm], and whether they are exact.
         self.measured: list[tuple[float, bool]] = []
-        self.not_compared: list[NotCompared] = list(incomparable(self._tables, terms))
+        #: What of the paths was not compared.
+        self.not_compared: list[NotCompared] = []
 
     @property
     def is_broken_off(self) -> bool:
@@ -213,7 +220,7 @@ class _Runs:
                 for reason in not_known_in_both(old)
             ]
         differences = [*result.differences, *state]
-        change = "changed" if differences else "not compared" if why else "same"
+        change = "changed" if differences else "not compared" if why or result.not_known else "same"
         if number not in self._ordered:
             change = "moved"
             text = f"the section of line {side.line} runs at another place in the order, in line {new_side.line}"
@@ -239,7 +246,9 @@ class _Runs:
         """Note the deviation of a path, or why it was not measured."""
         if result.reason:
             self.not_compared.append(NotCompared(f"{name}: {result.reason}"))
-        elif result.deviation is not None and np.isfinite(result.deviation.largest):
+        if result.not_known:
+            self.not_compared.append(NotCompared(f"{name}: {result.not_known}", matters=not self._terms.changes))
+        if result.deviation is not None and np.isfinite(result.deviation.largest):
             self.measured.append((result.length, result.deviation.is_exact))
 
 
@@ -255,9 +264,9 @@ def _left_open(old: Part, new: Part) -> Iterator[Difference]:
 
 
 def _gaps(trace: Trace, sections: Rows) -> list[tuple[int, int]]:
-    """Return the first row and the end of each range before, between and after sections."""
-    enter, last = trace.mode.sections.enter[sections], trace.mode.sections.last[sections]
-    return list(zip([0, *(last + 1).tolist()], [*enter.tolist(), len(trace)], strict=True))
+    """Return the first row and the end of each range before, between and after sections; a G13.1 stands in one."""
+    enter, leave = trace.mode.sections.enter[sections], trace.mode.sections.leave[sections]
+    return list(zip([0, *leave.tolist()], [*enter.tolist(), len(trace)], strict=True))
 
 
 def _side(section: Stretch, trace: Trace, reports: Sequence[PolarSection]) -> Side:

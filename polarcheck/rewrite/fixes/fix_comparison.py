@@ -7,29 +7,23 @@ from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Sequence
 
 import msgspec
-import numpy as np
 
 from polarcheck.checking.check import check_runs, read
 from polarcheck.checking.engine import LISTED
 from polarcheck.checking.settings import Settings
-from polarcheck.columns.path.moves import Moves, z_along
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Floats, Mask, Rows
 from polarcheck.foundation.finding import SEVERITIES, FileReport, Finding
-from polarcheck.foundation.states import Motion
 from polarcheck.foundation.time_limit import seconds_for, time_limit
 from polarcheck.program.machines.axis_table import FIRST_NAMED
 from polarcheck.program.reading import source
 from polarcheck.program.reading.source import Source
-from polarcheck.rewrite.compare.order_differences import order_differences
+from polarcheck.rewrite.compare.comparison_report import Difference
 from polarcheck.rewrite.compare.order_meanings import meaning_steps
-from polarcheck.rewrite.compare.orders import steps
-from polarcheck.rules.repair import FEED, WAY, Z
+from polarcheck.rewrite.compare.revision_comparison import RunPair
+from polarcheck.rewrite.compare.terms import EXACT, Change, Terms
 from polarcheck.rules.rule import load_all
 from polarcheck.rules.tables import Tables
 
-#: Lengths and feeds that differ by no more are equal [mm, mm/min].
-_SAME = 1e-6
 #: A G code, and nothing else.
 _ONE_CODE = re.compile(r"G[\d.]+")
 #: The address of a word.
@@ -74,15 +68,15 @@ def state_of(data: bytes, settings: Settings, path: str, encoding: str | None) -
 
 
 def objection(
-    before: State, after: State, rules: Collection[str], changes: Sequence[tuple[Collection[str], range]]
+    before: State, after: State, rules: Collection[str], changes: Sequence[Change], origin: Sequence[int]
 ) -> str:
     """
     Return why the fixed program must not replace the original one; empty if it may.
 
     rules: the rules whose findings are fixed.
-    changes: what the fixes declare to change (CHANGES: WAY, Z, FEED), and in which lines.
+    changes: what the fixes declare to change. origin: for each line of the fixed program that of the original one.
     """
-    return _worse(before.report, after.report, rules) or _moves_otherwise(before, after, changes)
+    return _worse(before.report, after.report, rules) or _moves_otherwise(before, after, changes, origin)
 
 
 def _worse(before: FileReport, after: FileReport, rules: Collection[str]) -> str:
@@ -126,123 +120,40 @@ def _rank(finding: Finding) -> int:
     return SEVERITIES[finding.severity]
 
 
-def _moves_otherwise(before: State, after: State, changes: Sequence[tuple[Collection[str], range]]) -> str:
+def _moves_otherwise(before: State, after: State, changes: Sequence[Change], origin: Sequence[int]) -> str:
+    """Return the first difference that no fix declares; empty if there is none."""
     if [name for name, _ in before.runs] != [name for name, _ in after.runs]:
         return "the program would run otherwise"
+    terms = Terms(EXACT, EXACT, EXACT, changes=changes, origin=origin)
     for (_, old), (_, new) in zip(before.runs, after.runs, strict=True):
-        difference = (
-            _in_sections(old, new, changes)
-            or _outside(old, new, changes)
-            or _orders(old["trace"], new["trace"], changes)
-        )
-        if difference:
-            return difference
+        pair = RunPair(old, new, terms)
+        differences = [difference for section in pair.sections() for difference in section.differences]
+        for difference in (*differences, *pair.outside()):
+            if not _is_of_fix(difference, old["trace"], changes):
+                return f"the result would be another: {difference.text}, in line {_line_of(difference, origin)}"
+        for reason in pair.not_compared:
+            if reason.matters:
+                return f"the result cannot be compared: {reason.reason}"
     return ""
 
 
-def _in_sections(old: Tables, new: Tables, changes: Sequence[tuple[Collection[str], range]]) -> str:
-    """Return the first difference in the moves of the tool center; empty if there is none."""
-    trace, new_trace = old["trace"], new["trace"]
-    was, now = (_fixed_moves(tables, changes) for tables in (old, new))
-    if len(was) != len(now) or len(was.entry) != len(now.entry):
-        return "the tool would make other moves in the polar mode"
-    same = (was.section == now.section) & (was.kind == now.kind) & (was.known == now.known)
-    for name in ("start", "end", "center"):
-        same &= _alike(getattr(was, name), getattr(now, name))
-    if not same.all() or not _alike(was.entry, now.entry).all():
-        line = _line(trace, was, ~same)
-        return f"the tool center would take another way{line}"
-    z = [_alike(*pair) for pair in zip(z_along(trace, was), z_along(new_trace, now), strict=True)]
-    if (wrong := ~(z[0] & z[1]) & ~_may_change(trace, was.row, changes, Z)).any():
-        return f"Z would move otherwise{_line(trace, was, wrong)}"
-    if (wrong := ~_alike(was.feed, now.feed) & ~_may_change(trace, was.row, changes, FEED)).any():
-        return f"F would be another{_line(trace, was, wrong)}"
-    return ""
-
-
-def _fixed_moves(tables: Tables, changes: Sequence[tuple[Collection[str], range]]) -> Moves:
-    """Return the moves without those that a fix may change; such a fix inserts no lines, and is applied alone."""
-    trace, moves = tables["trace"], tables["moves"]
-    fixed: Moves = moves
-    for names, edited in changes:
-        if WAY in names:
-            inside = (trace.blocks.line_in_file >= edited.start) & (trace.blocks.line_in_file < edited.stop)
-            rows = np.unique(moves.row)
-            changed = np.flatnonzero(inside[rows])
-            free = np.isin(moves.row, rows[np.union1d(changed, np.maximum(changed - 1, 0))])
-            fixed = fixed[~free]
-    return fixed
-
-
-def _may_change(trace: Trace, rows: Rows, changes: Sequence[tuple[Collection[str], range]], what: str) -> Mask:
+def _is_of_fix(difference: Difference, old: Trace, changes: Sequence[Change]) -> bool:
     """
-    Return a mask of the rows of moves that fixes declare to change: those of the edited lines.
-
-    For the feed also those for which F words or G codes of motion in these lines are in force.
+    Return True for a difference that a fix may make: the polar mode is left, a G code gives its place to another where
+    it does nothing beside the mode, words become readable.
     """
-    lines = trace.blocks.line_in_file
-    may = np.zeros(len(trace), bool)
-    for names, edited in changes:
-        if what in names:
-            inside = (lines >= edited.start) & (lines < edited.stop)
-            may |= inside
-            if what == FEED:
-                may |= np.isin(trace.feedrate.feed_word, trace.feedrate.feed_word[inside & trace.blocks.has("F")])
-                may |= np.isin(trace.modal.motion_word, trace.modal.motion_word[inside & trace.modal.sets("motion")])
-    return may[rows]
-
-
-def _outside(old: Tables, new: Tables, changes: Sequence[tuple[Collection[str], range]]) -> str:
-    """Return the first difference in the moves outside the polar mode; empty if there is none."""
-    trace, new_trace = old["trace"], new["trace"]
-    was, now = (np.flatnonzero(revision.axes.moves & (revision.mode.section < 0)) for revision in (trace, new_trace))
-    if len(was) != len(now):
-        return "the axes would make other moves outside the polar mode"
-    same = np.ones(len(was), bool)
-    for was_at, now_at in (
-        (trace.axes.motion, new_trace.axes.motion),
-        (trace.path.x, new_trace.path.x),
-        (trace.path.z, new_trace.path.z),
-        (trace.path.c_angle, new_trace.path.c_angle),
-    ):
-        same &= _alike(was_at[was], now_at[now])
-    if not same.all():
-        line = int(trace.blocks.line_in_file[was[np.argmin(same)]])
-        return f"the axes would move otherwise in line {line}, outside the polar mode"
-    wrong = ~_alike(trace.feedrate.feed[was], new_trace.feedrate.feed[now]) & (trace.axes.motion[was] != Motion.RAPID)
-    wrong &= ~_may_change(trace, was, changes, FEED)
-    if wrong.any():
-        line = int(trace.blocks.line_in_file[was[np.argmax(wrong)]])
-        return f"F would be another in line {line}, outside the polar mode"
-    return ""
-
-
-def _orders(old: Trace, new: Trace, changes: Sequence[tuple[Collection[str], range]]) -> str:
-    """
-    Return the first order that the fixed program lacks or has otherwise; empty if there is none.
-
-    A fix may give the place of a G code that does nothing beside the mode to another, and make words readable.
-    """
-    meant = {step.line for step in meaning_steps(old)}
-    edited = {line for _, lines in changes for line in lines} - meant
+    if difference.what == "section":
+        return difference.old == "open"
+    if difference.what != "order":
+        return False
     words = old.run.words
     addresses = {chr(number) for number in words.address[words.is_unreadable].tolist() if number < FIRST_NAMED}
-    before, after = (steps(trace, is_same_machine=True, with_sides=False) for trace in (old, new))
-    for difference in order_differences(before, after, _SAME):
-        is_code = _ONE_CODE.fullmatch(str(difference.old)) is not None and difference.old_line in edited
-        is_added = difference.old_line is None and addresses.issuperset(_ADDRESS.findall(difference.text))
-        if not is_code and not is_added:
-            return f"an order would be another: {difference.text}, in line {difference.old_line or difference.new_line}"
-    return ""
+    if difference.old_line is None:
+        return addresses.issuperset(_ADDRESS.findall(difference.text))
+    is_edited = any(difference.old_line in change.lines for change in changes)
+    is_meant = any(step.line == difference.old_line for step in meaning_steps(old))
+    return _ONE_CODE.fullmatch(str(difference.old)) is not None and is_edited and not is_meant
 
 
-def _alike(values: Floats, new_values: Floats) -> Mask:
-    """Return a mask of the values that are equal, or unknown in both."""
-    unknown = np.isnan(values) & np.isnan(new_values)
-    with np.errstate(invalid="ignore"):
-        return np.asarray(unknown | (values == new_values) | (np.abs(values - new_values) <= _SAME))
-
-
-def _line(trace: Trace, moves: Moves, wrong: Mask) -> str:
-    indices = np.flatnonzero(wrong)
-    return f" from line {int(trace.blocks.line_in_file[moves.row[indices[0]]])} on" if len(indices) else ""
+def _line_of(difference: Difference, origin: Sequence[int]) -> int:
+    return difference.old_line or (origin[difference.new_line - 1] if difference.new_line else 0)

@@ -14,6 +14,7 @@ from polarcheck.foundation.errors import SourceError, TooHardError
 from polarcheck.foundation.finding import FileReport, Finding, Fix
 from polarcheck.foundation.time_limit import current_limit, seconds_for, time_limit
 from polarcheck.program.reading.source import Source
+from polarcheck.rewrite.compare.terms import Change
 from polarcheck.rewrite.fixes.fix_comparison import State, objection, state_of
 from polarcheck.rules.editing import Replace
 from polarcheck.rules.repair import WAY, repair_of
@@ -195,7 +196,7 @@ class _Work:
                 chosen.append(_Candidate(finding, fix, edits))
                 taken += edits
         # A fix that may change the tool path is tried alone.
-        plain = [candidate for candidate in chosen if WAY not in _changes(candidate)[0]]
+        plain = [candidate for candidate in chosen if WAY not in _change(candidate).names]
         return plain or chosen[:1]
 
     def best(self, state: State, candidates: Sequence[_Candidate]) -> State | None:
@@ -247,14 +248,16 @@ class _Work:
 
     def _try(self, state: State, candidates: Sequence[_Candidate]) -> tuple[State | None, str]:
         """Apply fixes and check the result; returns it, or None and the reason why it is refused."""
-        data = applied(state.source, [span for candidate in candidates for span in candidate.spans])
+        edits = [span for candidate in candidates for span in candidate.spans]
+        data = applied(state.source, edits)
         if data is None:
             return None, f"its encoding, {state.source.encoding}, does not give all characters back as they are"
         self.checks += 1
         try:
             after = state_of(data, self.settings, self.path, self.encoding)
             rules = {candidate.finding.rule for candidate in candidates}
-            reason = objection(state, after, rules, [_changes(candidate) for candidate in candidates])
+            origin = origins(state.source, after.source, edits).tolist()
+            reason = objection(state, after, rules, [_change(candidate) for candidate in candidates], origin)
         except (SourceError, TooHardError) as error:
             return None, f"the result could not be judged: {error}"
         return (None, reason) if reason else (after, "")
@@ -280,8 +283,8 @@ def _key(finding: Finding, fix: Fix) -> _Key:
     return finding.rule, finding.line, fix.title
 
 
-def _changes(candidate: _Candidate) -> tuple[Sequence[str], range]:
+def _change(candidate: _Candidate) -> Change:
     """Return what a fix declares to change in the tool path, and in which lines."""
     repair = repair_of(candidate.finding.rule)
     lines = [line for edit in candidate.fix.edits for line in (edit.line, edit.end_line)]
-    return repair.changes if repair is not None else (), range(min(lines), max(lines) + 1)
+    return Change(repair.changes if repair is not None else (), range(min(lines), max(lines) + 1))

@@ -62,10 +62,11 @@ def path_on_part(tables: Tables, first: int = 0, until: int | None = None, chord
     """
     trace: Trace = tables["trace"]
     until = len(trace) if until is None else until
-    sections = of_sections(trace, tables["tool_center"], ())
-    parts = [_in_section(section) for section in sections if section.rows[0] < until and section.rows[-1] >= first]
     # With ANGLE as its tolerance C stays in degrees.
-    parts.append(_without_mode(outside(trace, (), np.arange(first, until), Terms(ANGLE)), chord))
+    terms = Terms(ANGLE)
+    sections = of_sections(trace, tables["tool_center"], (), terms)
+    parts = [_in_section(section) for section in sections if section.rows[0] < until and section.rows[-1] >= first]
+    parts.append(_without_mode(outside(trace, (), np.arange(first, until), terms), chord))
     moves = PartPath.concatenated(parts)
     moves = moves[(moves.row >= first) & (moves.row < until)]
     moves = moves[np.argsort(moves.row, kind="stable")]
