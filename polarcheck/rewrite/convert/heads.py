@@ -70,7 +70,7 @@ class Heads:
             content = self.texts.content(block)
             if content == _MARK:
                 if not self._takes_marks:
-                    self._take_out(block)
+                    self.edits.append(line_without(self.trace.text.source, *content_of(self.trace.text, block)))
                 continue
             number = self._archived(content)
             name = number or next(iter(_NAME.findall(re.sub(r"^[%$]?_?N?_?", "", content))), content)
@@ -99,9 +99,6 @@ class Heads:
     def _replace(self, block: int, text: str) -> None:
         begin, _ = content_of(self.trace.text, block)
         self.edits.append((begin, int(self.trace.text.blocks.end[block]), text))
-
-    def _take_out(self, block: int) -> None:
-        self.edits.append(line_without(self.trace.text.source, *content_of(self.trace.text, block)))
 
     # ---- further blocks ----
 

@@ -101,7 +101,8 @@ class Translation:
 
     def _references_c_alone(self, row: int, indices: Sequence[int]) -> bool:
         """A reference return of the C axis alone, for a machine that has no code for it and does without."""
-        if not self.trace.blocks.listed("c_axis_reference")[row] or not self._needs_no_reference:
+        needs_reference = self.target.severities.get("c-axis-not-referenced") != "off"
+        if needs_reference or not self.trace.blocks.listed("c_axis_reference")[row]:
             return False
         meaning, letter_of = self._codes.g.meaning, self.measures.letter_of
         codes = [meaning(self.measures.code_of(index)) for index in indices if letter_of(index) == "G"]
@@ -109,10 +110,6 @@ class Translation:
         is_alone = bool(axes) and all(word is not None and word.axis == "C" for word in axes)
         is_unknown = any(code.key == "reference_return" and not code.words for code in codes)
         return is_alone and is_unknown and all(code.key in ("reference_return", *OF_DISTANCE) for code in codes)
-
-    @property
-    def _needs_no_reference(self) -> bool:
-        return self.target.severities.get("c-axis-not-referenced") == "off"
 
     def _dwell(self, row: int, indices: Sequence[int], result: Translated) -> None:
         per_revolution = bool(self.trace.modal.state("feed_mode")[row] == FeedMode.PER_REVOLUTION)

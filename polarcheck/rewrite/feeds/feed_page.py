@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 from polarcheck.columns.feed import dynamics as reasons
 from polarcheck.columns.feed.dynamics import Dynamics
-from polarcheck.columns.feed.feed_curve import FeedCurve, feed_curve
+from polarcheck.columns.feed.feed_curve import feed_curve
 from polarcheck.columns.feed.highest_feeds import HighestFeeds
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.states import MM_PER_INCH
@@ -144,29 +144,18 @@ def curve(tables: Tables) -> Iterator[tuple[str | int | float | None, ...]]:
     trace: Trace = tables["trace"]
     runs: Dynamics = tables["dynamics"]
     feeds: HighestFeeds = tables["highest_feeds"]
-    lowest, points = highest(trace, feeds), feed_curve(runs)
+    lowest, points, channel = highest(trace, feeds), feed_curve(runs), str(trace.text.source.channel or "")
     for index, row in enumerate(points.row.tolist()):
         yield (
-            *_moment(points, index, trace, row),
+            rounded(points.time[index]),
+            int(trace.mode.section[row]),
+            int(trace.blocks.line_in_file[row]),
+            rounded(trace.feedrate.programmed_feed[row]),
+            rounded(points.feed[index]),
             rounded(lowest[row]),
             rounded(points.c_feed[index]),
-            _channel(trace),
+            channel,
         )
-
-
-def _moment(points: FeedCurve, index: int, trace: Trace, row: int) -> tuple[str | int | float | None, ...]:
-    """The first five values of a row of the curve."""
-    location = int(trace.mode.section[row]), int(trace.blocks.line_in_file[row])
-    return (
-        rounded(points.time[index]),
-        *location,
-        rounded(trace.feedrate.programmed_feed[row]),
-        rounded(points.feed[index]),
-    )
-
-
-def _channel(trace: Trace) -> str:
-    return str(trace.text.source.channel or "")
 
 
 def as_csv(tables: list[Tables]) -> Iterator[str]:

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 
 import msgspec
 import numpy as np
 
 from polarcheck.columns.feed.highest_feeds import HighestFeeds
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Floats, Mask, Rows
+from polarcheck.foundation.arrays import Floats, Mask, Rows, column_at
 from polarcheck.foundation.errors import TooHardError
 from polarcheck.rewrite.feeds.table import feed_number, highest
 from polarcheck.rules.editing import Replace, in_place_of, is_plain, with_word, words_of, written_word
@@ -55,27 +54,18 @@ class _Plan:
         self.trace = trace
         self.wanted = requested
         self.moving = takes_feed(trace.axes) & ~trace.axes.makes_corner
-        self.writes = trace.blocks.has("F") & (trace.feedrate.feed_word == self._own_word)
+        words = trace.blocks.word_indices("F")
+        rows, offsets = trace.run.row[words], trace.run.words.start[words]
+        own_word = column_at(len(trace), rows, offsets, -2)
+        self.writes = trace.blocks.has("F") & (trace.feedrate.feed_word == own_word)
         self.lowest: set[int] = set()
         self.writes_points = writes_points(trace.blocks, trace.lengths, trace.run)
         #: The F words of each row, and the first one at each place of the text.
         self.words_of_row: dict[int, list[int]] = {}
         self.word_at: dict[int, int] = {}
-        for index, row, offset in self._feed_words():
+        for index, row, offset in zip(words.tolist(), rows.tolist(), offsets.tolist(), strict=True):
             self.words_of_row.setdefault(row, []).append(index)
             self.word_at.setdefault(offset, index)
-
-    @property
-    def _own_word(self) -> Rows:
-        trace = self.trace
-        words, start_of_word = trace.blocks.word_indices("F"), np.full(len(trace), -2, np.int64)
-        start_of_word[trace.run.row[words]] = trace.run.words.start[words]
-        return start_of_word
-
-    def _feed_words(self) -> Iterator[tuple[int, int, int]]:
-        """The index of each F word, its row and its place in the text."""
-        run, words = self.trace.run, self.trace.blocks.word_indices("F")
-        return zip(words.tolist(), run.row[words].tolist(), run.words.start[words].tolist(), strict=True)
 
     def words(self) -> FeedWords:
         """
@@ -110,9 +100,8 @@ class _Plan:
         before[1:][starts[1:] != starts[:-1]] = np.nan
         has_word = self.writes[events]
         in_force = np.where(has_word, self.trace.feedrate.written_feed[events], before)
-        needs = np.zeros(len(self.trace), bool)
-        needs[events] = self.moving[events] & (in_force != after) & ~(np.isnan(in_force) & np.isnan(after))
-        return needs
+        needs = self.moving[events] & (in_force != after) & ~(np.isnan(in_force) & np.isnan(after))
+        return column_at(len(self.trace), events, needs, False)
 
     def _differ(self, rows: Rows) -> Rows:
         """Of these rows the blocks whose runs are to have different F."""

@@ -44,19 +44,12 @@ _PLAIN_WORD = re.compile(r"[A-Z][-+.0-9]+", re.IGNORECASE)
 _REFERENCE = re.compile(r"[0-9]+")
 
 
-def comment_signs(machine: Machine) -> tuple[str, str]:
-    """What a comment stands between on a machine."""
-    control = machine.control
-    return ("(", ")") if control.parentheses_are_comments else (control.line_comments + " ", "")
-
-
 def comment_text(comment: str, machine: Machine) -> str:
     """A comment with its signs; signs inside that would end it become brackets, control characters blanks."""
-    begin, end = comment_signs(machine)
     plain = "".join(sign if sign.isprintable() else " " for sign in comment)
-    if end:
-        plain = plain.replace("(", "[").replace(")", "]")
-    return f"{begin}{plain}{end}".rstrip()
+    if machine.control.parentheses_are_comments:
+        return f"({plain.replace('(', '[').replace(')', ']')})"
+    return f"{machine.control.line_comments} {plain}".rstrip()
 
 
 def decision_comment(text: str) -> str:
@@ -208,11 +201,8 @@ class _Sequence:
         self.is_on = style.numbered == "all"
         self.letter = "n" if style.lower_case else "N"
         self.step, self.digits = style.number_step, style.number_digits
+        #: Those to whose blocks something in the program may lead.
         self.references = jump_numbers(text)
-
-    def is_reference(self, number: int) -> bool:
-        """Something in the program may lead to the block with this N word."""
-        return number in self.references
 
     def between(self, index: int, count: int, until: int | None = None) -> list[str]:
         """
@@ -267,7 +257,7 @@ def _edit(
     number = _NUMBER.search(kept)
     written = [block_text(block, style, machine) for block in blocks]
     remarks = "".join(f" {comment_text(comment, machine)}" for comment in comments_of(text, index))
-    if not written and not remarks and not (number and sequence.is_reference(int(number[1]))) and not len(labels):
+    if not written and not remarks and not (number and int(number[1]) in sequence.references) and not len(labels):
         return line_without(text.source, begin, finish)
     skip = _SKIP.search(kept)
     numbers = sequence.between(index, len(written) - 1)
