@@ -9,7 +9,6 @@ import numpy as np
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import stretch
 from polarcheck.foundation.states import MOVES, NO_MOVE, STATES
-from polarcheck.program.machines.code_tables import NO_CODE, code_set
 from polarcheck.rewrite.writing.outcome import refused_at
 from polarcheck.rules.editing import is_plain, words_behind_head, written_word
 
@@ -31,13 +30,12 @@ class RemainingWords:
         self.trace = trace
         machine, polar = trace.machine, trace.machine.polar
         codes = [code for key in _DROPPED for code in machine.codes(key)]
-        self._dropped_codes = code_set([*codes, *polar.on, *polar.off])
-        self._codes = np.full(len(trace.run.words), NO_CODE, np.int32)
-        self._codes[trace.blocks.g_words] = trace.blocks.g_codes
+        of_codes = trace.blocks.words_at(trace.blocks.code_indices(*codes, *polar.on, *polar.off))
         centers = [word for pair in polar.center_words.values() for word in pair]
         addresses = {*polar.axis_addresses, "X", "U", "Z", "W", *centers, machine.arcs.radius_word, "F"}
         addresses |= {machine.arcs.larger_arc_word, machine.offsets.allowance_word}
-        self._dropped_addresses = {machine.address_number(address) for address in addresses if address}
+        numbers = [machine.address_number(address) for address in addresses if address]
+        self._is_dropped = of_codes | np.isin(trace.run.words.address, numbers)
         self._switches = trace.mode.enters | trace.mode.leaves
         # R of G10 P3 R4. is no radius: the words beside such a code are no end of a move.
         self._untouched = trace.blocks.listed(*NO_MOVE) & ~trace.blocks.codes(*trace.machine.macro.flow_codes)
@@ -57,7 +55,7 @@ class RemainingWords:
             return True
         if self._untouched[row]:
             return False
-        return any(self._is_dropped(index) for index in range(*stretch(self.trace.run.row, row, row + 1)))
+        return bool(self._is_dropped[slice(*stretch(self.trace.run.row, row, row + 1))].any())
 
     def of_row(self, row: int) -> list[str]:
         """
@@ -75,19 +73,13 @@ class RemainingWords:
         texts = []
         for index in words:
             letter = chr(int(run.words.address[index]))
-            if self._is_dropped(index) or (letter == "D" and self._beside_offset[row]):
+            if self._is_dropped[index] or (letter == "D" and self._beside_offset[row]):
                 continue
             # Words beside a switch of the mode, or of a call, mean nothing without it; codes, S and T stay.
             if (self._switches[row] or hands_over) and (letter not in "GMST" or self._of_call[index]):
                 continue
             texts.append(written_word(run, index) if plain else self._computed(row, index))
         return texts
-
-    def _is_dropped(self, index: int) -> bool:
-        address = int(self.trace.run.words.address[index])
-        if address == ord("G"):
-            return bool(self._dropped_codes[self._codes[index]])
-        return address in self._dropped_addresses
 
     def _computed(self, row: int, index: int) -> str:
         """The text of a code whose value a statement computes. Raises RefusedError for other words."""
