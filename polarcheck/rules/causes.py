@@ -36,7 +36,8 @@ SUBJECT_OF_TABLE: Final = {
 }
 #: What each subject rests on. A move is judged by itself: travel, a ramp on an arc. The speed of C is that of a move,
 #: and a rate follows from it; a shape and an outline are of a contour. A size is of a bar, a cutter or F, a stock what
-#: a bar loses, a rapid a move through it: their rules name them, as do those of words and of where the mode is on.
+#: a bar loses, a rapid a move through it, a reach how far the cuts of a section go: their rules name them, as do those
+#: of words and of where the mode is on.
 RESTS_ON: Final = {
     "arc": ("position", "arc"),
     "move": ("position", "arc", "move"),
@@ -50,6 +51,7 @@ RESTS_ON: Final = {
     "infeed": ("position", "arc", "compensation", "metal"),
     "stock": ("size", "position", "arc", "compensation", "metal"),
     "rapid": ("size", "rapid"),
+    "reach": ("size", "position", "arc"),
     "size": ("size", "word"),
     "word": ("word",),
     "mode": ("mode",),
@@ -68,6 +70,7 @@ UNIT_OF: Final = {
     "infeed": "section",
     "stock": "section",
     "rapid": "block",
+    "reach": "section",
     "size": "program",
     "word": "block",
     "mode": "program",

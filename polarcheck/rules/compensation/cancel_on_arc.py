@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     at=("compensation_off", "arc_clockwise", "arc_counterclockwise"),
     subject="move",
     doubts=(("metal", "block"),),
+    follows={"compensation": ("compensation-without-contour",)},
     is_symptom=True,
 )
 def cancel_on_arc(path: ProgrammedPath, compensation: CutterCompensation) -> Mask:

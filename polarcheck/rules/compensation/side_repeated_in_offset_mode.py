@@ -2,7 +2,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from polarcheck.rules.causes import UNIT
 from polarcheck.rules.rule import WARNING, rule
 
 if TYPE_CHECKING:
@@ -21,7 +20,7 @@ if TYPE_CHECKING:
     at=("compensation_left", "compensation_right"),
     once="section",
     subject="",
-    doubts=(("compensation", UNIT),),
+    doubts=(("compensation", "section"),),
 )
 def side_repeated_in_offset_mode(compensation: CutterCompensation, ramps: Ramps) -> Mask:
     """

@@ -18,7 +18,8 @@ if TYPE_CHECKING:
     values=("x", "x_needed", "stock", "diameter", "clearance"),
     worse=("x:x_needed",),
     at=("on",),
-    subject="size",
+    subject="reach",
+    follows={"section": ("nearly-regular-contour",)},
     doubts=(("compensation", "first start-up"), ("move", "X before"), ("metal", "block"), ("rapid", "tool call")),
     is_symptom=True,
 )

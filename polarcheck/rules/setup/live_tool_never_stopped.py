@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     WARNING,
     "the live tool still runs at {word}: {started} was not stopped after the polar mode; {to_stop}",
     values=("word", "other_line"),
+    follows={"block": ("offset-changed-in-polar",)},
 )
 def live_tool_never_stopped(blocks: ExecutedBlocks, procedure: Procedure, machine: Machine) -> Hits:
     """
