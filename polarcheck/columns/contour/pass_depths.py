@@ -6,7 +6,7 @@ import numpy as np
 
 from polarcheck.columns.metal.air_cuts import AirCuts, row_of_infeed
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, Table, cached_property
+from polarcheck.foundation.arrays import Columns, Floats, Mask, Points, Rows, Table, cached_property
 from polarcheck.geometry.tolerances import ROUNDING
 
 #: A step is far off the others if it is as many times as large.
@@ -15,6 +15,8 @@ _FAR = 3.0
 _LEAST, _FEWEST = 3, 2
 #: A step that is as many times as large as the least has left out a pass.
 _SKIPPED = 1.5
+#: Less than any sum of sines: the number of a pass that shares no point.
+_ALONE = 1e6
 #: Points that are nearer than this are one [mm].
 _SAME = 2e-3
 #: A depth is far below the turning if it is as many times as deep, and steep if it is as many times the cutter's width.
@@ -25,12 +27,14 @@ class Passes(Table, frozen=True):
     """
     Passes, n of them in order: cuts at one Z of one section.
 
-    row: int[n], the first cut. z: float64[n] [mm]. contour: int[n], equal for the same contour of one section.
+    row: int[n], the first cut. z: float64[n] [mm]. contour: int[n], equal for the same contour of one section. shape:
+    int[n], the same of all sections.
     """
 
     row: Rows
     z: Floats
     contour: Rows
+    shape: Rows
 
 
 class PassDepths(Columns, frozen=True):
@@ -44,17 +48,15 @@ class PassDepths(Columns, frozen=True):
         """All passes."""
         trace, rows = self.trace, np.flatnonzero(self.air_cuts.walls)
         if not len(rows):
-            return Passes(rows, np.zeros(0), rows)
+            return Passes(rows, np.zeros(0), rows, rows)
         z, section = trace.path.z[rows], trace.mode.section[rows]
         first = np.flatnonzero((np.diff(section, prepend=-1) != 0) | (np.abs(np.diff(z, prepend=np.inf)) > ROUNDING))
         if len(first) < _FEWEST:
-            return Passes(rows[first], z[first], np.zeros(len(first), np.int64))
-        count = np.diff(np.append(first, len(rows)))
-        ends = trace.path.end[rows]
-        sums = [np.add.reduceat(part, first) for part in (ends.real, ends.imag, np.abs(ends))]
-        keys = np.stack([section[first], count, *(np.rint(column / _SAME / 4) for column in sums)], axis=1)
-        _, contour = np.unique(keys, axis=0, return_inverse=True)
-        return Passes(rows[first], z[first], contour.ravel())
+            return Passes(rows[first], z[first], *np.zeros((2, len(first)), np.int64))
+        number = np.repeat(np.arange(len(first)), np.diff(np.append(first, len(rows))))
+        point = _numbered(np.rint(trace.path.end[rows] / _SAME / 4))
+        contour = _shapes(number, _numbered(point * (section.max() + 1) + section))
+        return Passes(rows[first], z[first], contour, _shapes(number, point))
 
     @cached_property
     def expected(self) -> dict[int, float]:
@@ -63,7 +65,7 @@ class PassDepths(Columns, frozen=True):
 
         NaN where several would be in step. The Z at which the turning ends for a pass in `is_beyond_turning`.
         """
-        passes = {**dict(self._beyond_turning), **dict(self._in_steps)}
+        passes = dict([*self._beyond_turning, *self._of_sections, *self._in_steps])
         return {row_of_infeed(self.trace, row): z for row, z in passes.items()}
 
     @cached_property
@@ -74,7 +76,7 @@ class PassDepths(Columns, frozen=True):
     @cached_property
     def is_beyond_turning(self) -> Mask:
         """Of the rows that are off, those that are too deep for the bar, not for the other passes."""
-        rows = {row for row, _ in self._beyond_turning} - {row for row, _ in self._in_steps}
+        rows = {row for row, _ in self._beyond_turning} - {row for row, _ in (*self._of_sections, *self._in_steps)}
         return self.trace.blocks.mask_of([row_of_infeed(self.trace, row) for row in sorted(rows)])
 
     @cached_property
@@ -99,12 +101,7 @@ class PassDepths(Columns, frozen=True):
     @cached_property
     def _in_steps(self) -> list[tuple[int, float]]:
         """Passes out of step with the others of their contour, and the Z that would fit; NaN where several would."""
-        passes = self.passes
-        if len(passes) < _FEWEST:
-            return []
-        order = np.argsort(passes.contour, kind="stable")
-        first = np.flatnonzero(np.diff(passes.contour[order], prepend=-1))
-        groups = (passes[group] for group in np.split(order, first[1:]) if len(group) >= _FEWEST)
+        groups = _groups(self.passes, self.passes.contour, _FEWEST)
         return [off for group in groups if (off := self._out_of_step(group)) is not None]
 
     def _out_of_step(self, passes: Passes) -> tuple[int, float] | None:
@@ -126,10 +123,46 @@ class PassDepths(Columns, frozen=True):
         number, z = off[0]
         return int(passes.row[number]), z if len(off) == 1 else np.nan
 
+    @cached_property
+    def _of_sections(self) -> list[tuple[int, float]]:
+        """Of one contour in several sections, in one pass each, the pass at another Z, if that is a slip of the pen."""
+        found = []
+        for passes in _groups(self.passes, self.passes.shape, _LEAST):
+            usual = float(np.median(passes.z))
+            off = np.flatnonzero(np.abs(passes.z - usual) > ROUNDING)
+            if len(off) != 1 or len(np.unique(passes.contour)) < len(passes):
+                continue
+            row, z = int(passes.row[off[0]]), float(passes.z[off[0]])
+            scale = float(self.trace.lengths.scale[row])
+            if _is_slip(z / scale, usual / scale):
+                found.append((row, usual))
+        return found
+
+
+def _groups(passes: Passes, key: Rows, fewest: int) -> list[Passes]:
+    """The passes of equal keys, where they are as many."""
+    order = np.argsort(key, kind="stable")
+    first = np.flatnonzero(np.diff(key[order], prepend=-1))
+    return [passes[group] for group in np.split(order, first[1:]) if len(group) >= fewest]
+
+
+def _numbered(values: Floats | Points | Rows) -> Rows:
+    """Per value its number among the different ones."""
+    return np.unique(values, return_inverse=True)[1]
+
+
+def _shapes(number: Rows, point: Rows) -> Rows:
+    """Per pass a number of its points, without those that no other pass has: the first and the last have leads."""
+    size = point.max() + 1
+    of_pass, point = np.divmod(np.unique(number * size + point), size)
+    weight = np.where(np.bincount(point)[point] > 1, np.sin(point + 1.0), 0.0)
+    total = np.bincount(of_pass, weight)
+    return _numbered(np.where(total, total, -_ALONE * (1.0 + np.arange(len(total)))))
+
 
 def _is_slip(written: float, intended: float) -> bool:
     """The digits of one number are those of the other and one more, or its point is elsewhere."""
-    long, short = (f"{abs(value):.4f}".replace(".", "").strip("0") for value in (written, intended))
+    long, short = (f"{abs(value):.5f}".replace(".", "").strip("0") for value in (written, intended))
     if (written < 0) != (intended < 0) or not short:
         return False
     return long == short or any(long[:index] + long[index + 1 :] == short for index in range(len(long)))
