@@ -74,3 +74,43 @@ def test_a_pass_that_cannot_go_below_the_turning_is_in_step() -> None:
     """Of Z-1.95 before Z-3.9, and Z-39 behind Z-19.5, the second lies far below the spigot that is turned."""
     turning = "T0202\nG97 S900 M3\nG0 X30. Z2. G99\nG1 Z-12. F.2\nX50.\nG0 Z50.\nM5\n"
     assert off([-19.5, -3.9], "G21", turning) == pytest.approx({1: -1.95})
+
+
+LEAD = "G1 Z{}\nG42 X44. C-10. F80\nG2 X24. C0 R10.\n"
+ROUND = "G1 C9.\nX-24. C9.\nC-9.\nX24.\nC0\n"
+OUT = "G2 X44. C10. R10.\nG1 G40 X70. F800\n"
+
+
+def lines_off(text: str) -> dict[int, float]:
+    tables = tables_of(text, "fanuc", "1:radius=4")
+    depths, lines = tables["pass_depths"], tables["trace"].blocks.line
+    return {int(lines[row]): float(depths.expected[row]) for row in np.flatnonzero(depths.is_off).tolist()}
+
+
+def test_leads_of_the_first_and_the_last_pass_are_no_other_contour() -> None:
+    text = (
+        f"O1\nG98 T0101\nG0 X80. Z2. C0\nG12.1\nG1 X70. F800\n{LEAD}{ROUND}G1 Z-4.\n{ROUND}G1 Z-6.\n{ROUND}{OUT}G13.1\n"
+    )
+    assert lines_off(text.format("-2.")) == {}
+    assert lines_off(text.format("-22.")) == {6: -2.0}
+
+
+@looped(
+    ("depths", "expected"),
+    [
+        (["-4.", "-4.", "-4.", "-4."], {}),
+        (["-4.", "-4.", "-4.", "-40."], {3: -4.0}),
+        (["-4.25", "-42.5", "-4.25", "-4.25"], {1: -4.25}),
+        # Another depth, which is no slip of the pen; and two of each.
+        (["-4.", "-4.", "-4.", "-6."], {}),
+        (["-4.", "-4.", "-40.", "-40."], {}),
+    ],
+)
+def test_one_contour_in_several_sections_has_one_depth(depths: list[str], expected: dict[int, float]) -> None:
+    sections = "".join(
+        f"G0 C{90 * number}.\nG0 X70. Z2.\nG12.1\n{LEAD.format(z)}{ROUND}{OUT}Z2.\nG13.1\n"
+        for number, z in enumerate(depths)
+    )
+    off_by_line = lines_off(f"O1\nG98 T0101\n{sections}M30\n")
+    size = sections.count("\n") // len(depths)
+    assert {(line - 3) // size: z for line, z in off_by_line.items()} == expected

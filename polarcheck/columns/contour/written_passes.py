@@ -84,7 +84,10 @@ def _difference(is_otherwise: NDArray[np.bool_], own: Rows, model: Rows) -> int 
     """The first block that differs, where one slip of a code or of two blocks explains that; None where none does."""
     differs = np.flatnonzero(is_otherwise | (own != model))
     phases = own // _COMPENSATION != model // _COMPENSATION
-    if np.ptp(differs) + 1 != len(differs) or len(own) - len(differs) < _ALIKE:
+    # G91 holds up to the end of the pass.
+    is_of_steps = not is_otherwise.any() and bool(((own ^ model)[differs] == _STEP).all())
+    least = 1 if is_of_steps else _ALIKE
+    if np.ptp(differs) + 1 != len(differs) or len(own) - len(differs) < least:
         return None
     if max(np.count_nonzero(is_otherwise), np.count_nonzero(phases)) > _DIFFERING:
         return None

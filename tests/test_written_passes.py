@@ -1,0 +1,59 @@
+"""Passes with the same numbers: a code, a letter or the order of two blocks in one of them is a slip."""
+
+from __future__ import annotations
+
+import pytest
+from cases import looped
+from programs import report_of, tables_of
+
+pytestmark = pytest.mark.ci
+
+HEAD = "O1\nG21 G98 T0101\nG0 X80. Z2. C0\nG12.1\nG1 X80. C0. F800\n"
+BLOCKS = "Z{}.\nG42 X40. C0. F80\nC20.5\nX-36.2 C18.7\nX-44.3 C-15.4\nX40. C-22.9\nC0.\nG40 X80. C0. F800\n"
+END = "Z2.\nG13.1\nM30\n"
+
+
+def program(old: str, new: str, which: int = 2) -> str:
+    """Three passes, one of them with another text."""
+    texts = [BLOCKS.format(-2 * number) for number in range(1, 4)]
+    assert old in texts[which]
+    texts[which] = texts[which].replace(old, new)
+    return HEAD + "".join(texts) + END
+
+
+def different(text: str, machine: str = "fanuc") -> dict[int, int]:
+    """The lines that differ, each with that of the other pass."""
+    tables = tables_of(text, machine, "1:radius=4")
+    lines = tables["trace"].blocks.line
+    found = tables["pass_differences"].found.values()
+    return {int(lines[one.row]): int(lines[one.other]) for one in found}
+
+
+def test_a_sound_program_is_silent() -> None:
+    assert report_of(program("C0.", "C0."), "fanuc", "1:radius=4").findings == []
+
+
+@looped(
+    ("old", "new", "expected"),
+    [
+        ("C20.5", "C20.5", {}),
+        # A code that is in force may be written again; a pass without compensation is another pass.
+        ("C20.5", "G1 C20.5", {}),
+        ("G42 X40.", "X40.", {}),
+        # G42 a block late, G40 a block early, a letter, two blocks exchanged.
+        ("G42 X40. C0. F80\nC20.5", "X40. C0. F80\nG42 C20.5", {23: 7}),
+        ("C0.\nG40 X80. C0.", "G40 C0.\nX80. C0.", {28: 12}),
+        ("C20.5", "X20.5", {24: 8}),
+        ("C20.5\nX-36.2 C18.7", "X-36.2 C18.7\nC20.5", {24: 8}),
+    ],
+)
+def test_what_differs_in_the_last_of_three_passes(old: str, new: str, expected: dict[int, int]) -> None:
+    assert different(program(old, new)) == expected
+
+
+@looped(("old", "line"), [("X-36.2", 25), ("X40. C-22.9", 27)])
+def test_increments_in_one_pass_are_told_by_the_others(old: str, line: int) -> None:
+    text = program(old, f"G91 {old}")
+    assert different(text, "mazak-eia") == {line: line - 16}
+    found = report_of(text, "mazak-eia", "1:radius=4").findings
+    assert any(one.line == line and "without G91" in one.message for one in found), found
