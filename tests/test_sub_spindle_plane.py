@@ -33,7 +33,16 @@ def contour(axis: str = "C", mirrored: bool = False) -> str:
 
 
 def told(report: FileReport) -> list[str]:
-    return [each.reason for each in report.not_evaluated if "sub-spindle" in each.reason]
+    """What is said of its sides and axes; of depths nothing is judged on any sub-spindle."""
+    reasons = [each.reason for each in report.not_evaluated if "sub-spindle" in each.reason]
+    return [reason for reason in reasons if "its face" not in reason]
+
+
+def test_depths_on_a_sub_spindle_are_not_judged_and_that_is_told_without_weight() -> None:
+    report = report_of(DOOSAN.format("1", contour(), "1"), "doosan", TOOL)
+    (entry,) = [entry for entry in report.not_evaluated if "its face" in entry.reason]
+    assert entry.reason.endswith("is on the sub-spindle: what is above and below its face is not known")
+    assert not entry.matters
 
 
 @pytest.mark.nightly
@@ -58,7 +67,7 @@ def test_where_it_does_not_say_so_the_sides_are_not_judged_and_it_is_told(machin
     (reason,) = told(report)
     assert "the section of line 8 is on the sub-spindle" in reason
     assert "sub_spindle_plane" in reason
-    assert len(report.not_evaluated) == 1
+    assert len([entry for entry in report.not_evaluated if entry.matters]) == 1
 
 
 @pytest.mark.ci

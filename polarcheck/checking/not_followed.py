@@ -115,13 +115,18 @@ def on_sub_spindle(trace: Trace) -> Iterator[tuple[str, int]]:
 
 
 def depths_not_known(trace: Trace) -> Iterator[tuple[str, int]]:
-    """The sections of which nobody knows which way along Z the part lies."""
+    """The sections of which nobody knows which way along Z the part lies: a sub-spindle has a Z of its own."""
+    unknown = "what is above and below {} face is not known"
     if len(trace.mode.sections) and not z_into_part(trace):
         yield (
             f"control.z_into_part is {trace.machine.control.z_into_part}, and turning cuts the other way along Z: "
-            "what is above and below the face is not known",
+            + unknown.format("the"),
             len(trace.mode.sections),
         )
+    rows = np.flatnonzero(trace.mode.enters & trace.modal.on_sub_spindle & ~trace.axes.enters_other_axes)
+    if len(rows):
+        line = int(trace.blocks.line[rows[0]])
+        yield f"the section of line {line} is on the sub-spindle: {unknown.format('its')}", len(rows)
 
 
 def face_not_known(trace: Trace, bar: Bar) -> Iterator[tuple[str, int]]:
