@@ -613,7 +613,10 @@ class Maker:
         code = "" if cut.how == "center path" else "G42" if contour.side == "right" else "G41"
         lead, first, last = self.leads(contour, normal, radius)
         if lead:
-            start = finish = first + normal * max(radius + 2.0, abs(start - contour.start) - abs(first - contour.start))
+            start = first + normal * max(radius + 2.0, abs(start - contour.start) - abs(first - contour.start))
+            while abs(start) < self.bar / 2 + radius + 0.1:
+                start += normal
+            finish = start
         elif self.style.lead == "corner" and abs(first_direction(contour) - last_direction(contour)) > 1e-3:
             start -= first_direction(contour) * (radius + 1)
             finish += last_direction(contour) * (radius + 1)
