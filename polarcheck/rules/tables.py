@@ -269,9 +269,13 @@ class Tables(dict[str, Any]):
         return iter(self.items())
 
     def forget(self, name: str) -> None:
-        """Drop the columns of a table: they are made again when they are asked for. Polygons stay, which take long."""
+        """
+        Drop the columns of a table: they are made again when they are asked for.
+
+        Polygons of the one section of a program stay: what it makes is told only where they are there.
+        """
         table = self.get(name)
-        if table is None or getattr(table, "has_areas", False):
+        if table is None or (len(self["sections"]) == 1 and getattr(table, "has_areas", False)):
             return
         columns: dict[str, Any] = getattr(table, "__dict__", {})
         for column in [*columns]:

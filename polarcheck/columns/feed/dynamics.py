@@ -146,7 +146,7 @@ class Dynamics:
             np.add.at(time, self.pieces.move, self.pieces.time())
         return time
 
-    @cached_property
+    @property
     def time_without_override(self) -> Floats:
         """The same without override: the tool runs at F in force throughout."""
         is_known = self.at_feed & self.moves.is_of_tool

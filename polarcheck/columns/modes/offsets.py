@@ -186,7 +186,7 @@ class ToolOffsets(Columns, frozen=True):
             table[number] = value
         return repeated(table[0], len(self.run)) if is_uniform(table) else table[self.tools.offset_number]
 
-    @cached_property
+    @property
     def _radius_given(self) -> Floats:
         return computed(_first_known, self._radius_of_job, self._radius_of_comments)
 

@@ -92,7 +92,7 @@ class CalledTools(Columns, frozen=True):
         is_edge = (self.edge > 0) & (tool != 0) & (np.abs(tool) <= _NO_TOOL)
         return np.where(self.has_edges, np.where(is_edge, np.abs(tool) * _EDGES + self.edge, 0), self._t)
 
-    @cached_property
+    @property
     def tool_called_before(self) -> Rows:
         """The tool and offset that T called above the row."""
         return before(self.tool_called, self.blocks.starts, 0)

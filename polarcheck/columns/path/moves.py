@@ -60,7 +60,7 @@ class Moves(PlanePath, frozen=True, dict=True):
         """Distance on the plane [mm]."""
         return polar.length(*self.shape)
 
-    @cached_property
+    @property
     def way(self) -> Floats:
         """Distance along which F is measured [mm]: on the plane, or in space."""
         return np.hypot(self.length, self.rise) if self.rise.any() else self.length
@@ -82,7 +82,7 @@ class Moves(PlanePath, frozen=True, dict=True):
         """L, smallest distance of the tool center to the center of C [mm]; NaN where it is not known."""
         return self._where_known(polar.nearest)
 
-    @cached_property
+    @property
     def farthest(self) -> Floats:
         """Largest distance of the tool center to the center of C [mm]; NaN where it is not known."""
         return self._where_known(polar.farthest)
@@ -92,7 +92,7 @@ class Moves(PlanePath, frozen=True, dict=True):
         """Highest rate of C on the way [deg/min]; NaN where feed, radius or position is not known."""
         return self._where_known(rates.c_feed, self.plane_feed)
 
-    @cached_property
+    @property
     def c_acceleration(self) -> Floats:
         """Highest acceleration of C on the way [deg/s2]."""
         return self._where_known(rates.c_acceleration, self.plane_feed)
@@ -102,7 +102,7 @@ class Moves(PlanePath, frozen=True, dict=True):
         """Highest rate of X on the way [mm/min, radius]; NaN where feed, radius or position is not known."""
         return self._where_known(rates.x_feed, self.plane_feed)
 
-    @cached_property
+    @property
     def x_acceleration(self) -> Floats:
         """Highest acceleration of X on the way [mm/s2, radius]."""
         return self._where_known(rates.x_acceleration, self.plane_feed)
@@ -112,7 +112,7 @@ class Moves(PlanePath, frozen=True, dict=True):
         """The tool center runs there: its path is known or, without G41 and G42, the programmed one."""
         return np.asarray(self.known | (self.phase == offset_path.Phase.CANCELLED))
 
-    @cached_property
+    @property
     def time(self) -> Floats:
         """How long the move takes [s]."""
         return polar.time(self.way, self.feed * self.arc_share)

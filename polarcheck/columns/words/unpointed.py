@@ -74,7 +74,7 @@ class Unpointed(Columns, frozen=True):
         """
         return self._of_file(self._coordinates | self._feeds | self._radii_of_offsets)
 
-    @cached_property
+    @property
     def rank(self) -> Floats:
         """How well a number of `slips` stands for the others: a small coordinate of a section best."""
         small = self._coordinates & ~self.trace.coordinates.is_large_unpointed
