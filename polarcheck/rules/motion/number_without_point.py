@@ -125,10 +125,11 @@ def number_without_point(unpointed: Unpointed) -> Hits:
         C20
         G13.1
     """
+    warning, note = unpointed.slips | (unpointed.in_meters > 0), unpointed.in_increments > 0
     return graded(
-        warning=unpointed.slips | (unpointed.in_meters > 0),
-        note=unpointed.in_increments > 0,
-        worst=unpointed.rank,
+        warning=warning,
+        note=note,
+        worst=unpointed.rank if (warning | note).any() else None,
         follows={"program": unpointed.is_feed},
     )
 
