@@ -290,7 +290,7 @@ def along(
 ) -> Overcuts:
     """Cuts by moves in offset mode."""
     ramps = np.full(len(radius), is_ramp)
-    cuts, _ = overcuts(contour, left, air(contour), contour.loop, path, radius, ramps, tolerance)
+    cuts, *_ = overcuts(contour, left, air(contour), contour.loop, path, radius, ramps, tolerance)
     return Overcuts(contour.row[cuts.wall], cuts.move, cuts.depth, cuts.place)
 
 

@@ -34,7 +34,7 @@ def ramped(begins: list[complex], air: list[float], turn: complex, cancels: bool
     contour = lines(*(ends[::-1] if cancels else ends), [row + 1 for row in rows])
     path = lines(*(ramp[::-1] if cancels else ramp), [row + 2 * cancels for row in rows])
     left, sizes = np.full(count, cancels), np.full(count, RADIUS)
-    cuts, _ = overcuts(contour, left, np.array(air), contour.loop, path, sizes, np.ones(count, bool))
+    cuts, *_ = overcuts(contour, left, np.array(air), contour.loop, path, sizes, np.ones(count, bool))
     return cuts
 
 

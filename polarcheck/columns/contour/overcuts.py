@@ -28,6 +28,7 @@ from polarcheck.geometry.tolerances import ADJUSTMENT, ROUNDING
 
 if TYPE_CHECKING:
     from polarcheck.geometry.overcuts.cuts import Cuts
+    from polarcheck.geometry.polygons.finished_part import PartsOfLoops
     from polarcheck.geometry.segments import Curves
 
 #: Largest distance of two points that are intended as one [tolerances].
@@ -243,9 +244,13 @@ class Overcuts:
         return curves_of(tool, loop, chosen), is_ramp[chosen]
 
     @cached_property
-    def _all_cuts(self) -> tuple[CutsOfRows, Mask, Rows]:
-        """The cuts of all moves of the tool center, a mask of cuts by ramps, and the loops that cross themselves."""
-        nothing = CutsOfRows.none(), np.zeros(0, bool), np.zeros(0, np.int64)
+    def _all_cuts(self) -> tuple[CutsOfRows, Mask, Rows, PartsOfLoops | None]:
+        """
+        The cuts of all moves of the tool center, a mask of cuts by ramps, and the loops that cross themselves.
+
+        Further: the parts of the loops that were searched.
+        """
+        nothing = CutsOfRows.none(), np.zeros(0, bool), np.zeros(0, np.int64), None
         if not self.compensates:
             return nothing
         if self._keeps_away:
@@ -257,8 +262,8 @@ class Overcuts:
         from polarcheck.geometry.overcuts import own_loop
 
         around = self._air_radius(walls), self.level
-        cuts, tangled = own_loop.overcuts(walls, left, *around, path, radius, is_ramp, tolerance, self.bar)
-        return CutsOfRows.of(cuts, path, walls), is_ramp[cuts.move], tangled
+        cuts, tangled, parts = own_loop.overcuts(walls, left, *around, path, radius, is_ramp, tolerance, self.bar)
+        return CutsOfRows.of(cuts, path, walls), is_ramp[cuts.move], tangled, parts
 
     @property
     def _radius_of_path(self) -> Floats:
@@ -304,13 +309,13 @@ class Overcuts:
     @cached_property
     def cuts(self) -> CutsOfRows:
         """All cuts by moves in offset mode."""
-        cuts, by_ramp, _ = self._all_cuts
+        cuts, by_ramp, *_ = self._all_cuts
         return cuts[~by_ramp]
 
     @cached_property
     def sweeps(self) -> CutsOfRows:
         """All cuts by start-ups and offset cancels at the depth of their contour."""
-        cuts, by_ramp, _ = self._all_cuts
+        cuts, by_ramp, *_ = self._all_cuts
         return cuts[by_ramp]
 
     @cached_property
@@ -348,7 +353,8 @@ class Overcuts:
         contour_at = np.where(starts_up, trace.path.end, trace.path.start)[ramp]
         far = np.where(starts_up, trace.path.start, trace.path.end)[ramp]
         ramps = np.where(self._at_depth[ramp], far, contour_at), contour_at
-        depth = depth_inside(*self.walls, ramps, self._loop_of_ramps[ramp], tolerance, _ROUNDINGS * tolerance)
+        parts = self._all_cuts[3] if np.isnan(self.bar) else None
+        depth = depth_inside(*self.walls, ramps, self._loop_of_ramps[ramp], tolerance, _ROUNDINGS * tolerance, parts)
         return trace.blocks.mask_of(ramp[depth > _ROUNDINGS * tolerance])
 
     @cached_property

@@ -21,7 +21,7 @@ from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.overcuts.cuts import Cuts, assign_facing_walls, cuts_into
 from polarcheck.geometry.polygons import areas
 from polarcheck.geometry.polygons.faces import ends_of, gathered, lines_of, polylines
-from polarcheck.geometry.polygons.finished_part import Contours, FinishedParts, finished_parts
+from polarcheck.geometry.polygons.finished_part import Contours, FinishedParts, PartsOfLoops, finished_parts
 from polarcheck.geometry.segments import Curves, Segments, first_of_its_kind, members, segments
 from polarcheck.geometry.tolerances import ZERO
 
@@ -44,9 +44,11 @@ def overcuts(
     is_ramp: Mask,
     tolerance: float = TOLERANCE,
     bar: float = np.nan,
-) -> tuple[Cuts, Rows]:
+) -> tuple[Cuts, Rows, PartsOfLoops | None]:
     """
     The deepest overcut of each move into the finished part of its loop, and the loops whose walls cross too often.
+
+    Further: the parts of the loops that were searched; None if there are none.
 
     contour: the programmed blocks in offset mode.
     left: bool[moves of contour], the tool runs left of the block: G41 with R above 0, G42 with R below.
@@ -71,7 +73,7 @@ def overcuts(
     repeats = ~first_of_its_kind(path)[chords.move] if _is_long(chords) else np.zeros(len(chords), bool)
     chords = chords[_comes_close(walls, chords, repeats, is_ramp[chords.move], radius[chords.move] - tolerance)]
     if not len(chords):
-        return Cuts.none(), np.zeros(0, np.int64)
+        return Cuts.none(), np.zeros(0, np.int64), None
     loops, group = np.unique(chords.loop, return_inverse=True)
     smallest = np.full(len(loops), np.inf)
     np.minimum.at(smallest, group, radius[chords.move])
@@ -94,7 +96,7 @@ def overcuts(
     cuts = Cuts.concatenated(
         [assign_facing_walls(part, own_loop[unshared]), assign_facing_walls(levels, compared_with_level)]
     )
-    return cuts.worst(), loops[part.tangled]
+    return cuts.worst(), loops[part.tangled], PartsOfLoops(loops, part)
 
 
 def _levels(

@@ -6,10 +6,10 @@ import msgspec
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, mask_at
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, different, mask_at
 from polarcheck.geometry.polygons import areas
 from polarcheck.geometry.polygons.faces import coordinates, gathered, lines_of
-from polarcheck.geometry.polygons.finished_part import Contours, FinishedParts, finished_parts
+from polarcheck.geometry.polygons.finished_part import Contours, FinishedParts, PartsOfLoops, finished_parts
 from polarcheck.geometry.polygons.noding import may_share_stretches
 from polarcheck.geometry.segments import Curves, first_of_its_kind, members, segments
 
@@ -26,7 +26,13 @@ _POINTS = 17
 
 
 def depth_inside(
-    contour: Curves, left: Mask, lines: tuple[Points, Points], loop: Rows, tolerance: float, gap: float
+    contour: Curves,
+    left: Mask,
+    lines: tuple[Points, Points],
+    loop: Rows,
+    tolerance: float,
+    gap: float,
+    known: PartsOfLoops | None = None,
 ) -> Floats:
     """
     The greatest depth [mm] of each line in the finished part of its loop; 0 where the part is unknown.
@@ -36,14 +42,19 @@ def depth_inside(
     loop: int[n], the loop of each line.
     tolerance: of the chords of arcs [mm].
     gap: the largest gap that is closed [mm].
+    known: parts of some loops of the contour, of any R and with no bar: they are taken if no loop has a gap.
 
     The part of an open contour is known only if the contour ends outside the bar, so that no point lies farther out
     than its ends. A contour that encloses only a sliver or a corner of itself has no known part: a wrong sign makes it
     run the other way.
     """
-    loops, group = np.unique(loop, return_inverse=True)
-    half = np.full(len(loops), gap / 2)
-    part = finished_parts(Contours(contour, left, loops, np.arange(len(loops)), half, np.nan, tolerance))
+    loops = different(loop)
+    if known is not None and known.closes(loops):
+        loops, part = known
+    else:
+        half = np.full(len(loops), gap / 2)
+        part = finished_parts(Contours(contour, left, loops, np.arange(len(loops)), half, np.nan, tolerance))
+    group = np.searchsorted(loops, loop)
     start, end = lines
     sample = start[:, None] + (end - start)[:, None] * np.linspace(0, 1, _POINTS) + (part.pitch * group)[:, None]
     points = shapely.points(coordinates(sample))

@@ -13,6 +13,8 @@ bar. The part is unknown there unless the bar is known.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import msgspec
 import numpy as np
 import shapely  # type: ignore[import-untyped]
@@ -85,6 +87,19 @@ class FinishedParts(msgspec.Struct, frozen=True):
     along: Floats
     ahead: Floats
     pitch: float
+
+
+class PartsOfLoops(NamedTuple):
+    """The finished part of each of these loops, rising; its group is the number of the loop among them."""
+
+    loop: Rows
+    part: FinishedParts
+
+    def closes(self, loops: Rows) -> bool:
+        """True if these loops are all among them, each closed without a line across a gap: R is not in their part."""
+        part = self.part
+        is_closed = ~part.open & (part.gap == 0) & ~shapely.is_empty(part.polygon)
+        return bool(np.isin(loops, self.loop[is_closed]).all())
 
 
 def finished_parts(contours: Contours) -> FinishedParts:
