@@ -84,7 +84,7 @@ OUT = "G2 X44. C10. R10.\nG1 G40 X70. F800\n"
 def lines_off(text: str) -> dict[int, float]:
     tables = tables_of(text, "fanuc", "1:radius=4")
     depths, lines = tables["pass_depths"], tables["trace"].blocks.line
-    return {int(lines[row]): float(depths.expected[row]) for row in np.flatnonzero(depths.is_off).tolist()}
+    return {int(lines[row]): z for row, z in depths.expected.items()}
 
 
 def test_leads_of_the_first_and_the_last_pass_are_no_other_contour() -> None:
