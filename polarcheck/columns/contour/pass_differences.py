@@ -79,7 +79,7 @@ class PassDifferences(Columns, frozen=True):
     def _of_words(self) -> list[Difference]:
         """The differences of passes that are written otherwise."""
         return [
-            Difference(int(rows[first]), int(model[first]), False, *map(int, model[[0, -1]]))
+            Difference(int(rows[first]), int(model[first]), False, int(model[0]), int(model[-1]))
             for rows, model, first in self._written
         ]
 
