@@ -331,7 +331,10 @@ def test_what_a_baseline_knows_is_not_fixed() -> None:
         ("M8 S3000->M8 S300", "the result would be another: M8 S3000 has become M8 S300"),
         ("G4 P500->G4 P50", "the result would be another: G4 P500 has become G4 P50"),
         ("G28 H0\n->", "the result would be another: G28 H0 is missing"),
-        ("G1 X99. F300->G1 X99. F900", "another: F300 mm/min has become F900 mm/min along 17.877 mm, in line 8"),
+        (
+            "G1 X99. F300->G1 X99. F900",
+            "the result would be another: F300 mm/min has become F900 mm/min along 17.877 mm, in line 8",
+        ),
         ("–->–", "the finding would still be there, in line 4"),
         ("M30\n->G12.1\nM30\n", "the result would have polar-never-left in line 8: "),
         ("C–10.->C-10. G53", "the result would have "),

@@ -117,7 +117,7 @@ class Engine:
             rows = places.rows(rule.over, self.tables)
             unknown = self.trace.modal.behind_unknown_code
             if rule.of_contours:
-                unknown = unknown | self.tables["unknown_words"].in_section
+                unknown = unknown | self.tables["unknown_words"].around_section
             hits = msgspec.structs.replace(hits, mask=hits.mask & ~((rows >= 0) & unknown[rows]))
         return self._shared_if_empty(hits)
 

@@ -43,6 +43,11 @@ class PlanePath(Table, frozen=True):
         return ~(np.isnan(self.start) | np.isnan(self.end) | (self.is_arc & np.isnan(self.center)))
 
     @property
+    def is_still(self) -> Mask:
+        """The move stands still on the plane, as Z alone."""
+        return np.asarray((self.start == self.end) & ~self.is_arc)
+
+    @property
     def sweep(self) -> Floats:
         """Signed angle of each arc about its center [rad], counterclockwise above 0; 0 for lines."""
         return arc_sweep(*self.shape)

@@ -248,6 +248,8 @@ class PartComments(Columns, frozen=True):
         if any(fits(size, shape) for size in comment.sizes for shape in shapes):
             # Another section may reach the size, as where this tool leaves something for the next one.
             return
+        if not self.trace.path.moves_of(self.trace.path.cuts).is_known.all():
+            return  # so may one of which not all is known
         hits = [hit for size in comment.sizes for hit in self._contradictions(comment, size, of_comment)]
         yield from hits[:1] or self._beyond_diameter(comment, of_comment)
 

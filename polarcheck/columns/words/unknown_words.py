@@ -133,10 +133,18 @@ class UnknownWords(Columns, frozen=True):
         return np.asarray(matters | np.isin(self.index, np.concatenate(lasting)))
 
     @cached_property
-    def in_section(self) -> Mask:
-        """The rows of polar sections in which a word of unknown value stands that says where the tool goes."""
-        rows = self.row[self.matters & (self.trace.mode.section[self.row] >= 0)]
-        return self.trace.mode.anywhere_in_section(self.trace.blocks.mask_of(rows))
+    def around_section(self) -> Mask:
+        """
+        The rows of polar sections in which a word of unknown value stands that says where the tool goes, and the rows
+        on the way to them and from them.
+        """
+        sections = self.trace.mode.sections
+        number = self.trace.mode.section[self.row[self.matters]]
+        is_unknown = np.append(np.bincount(number[number >= 0], minlength=len(sections)) > 0, False)
+        row = np.arange(len(self.trace))
+        begun = np.searchsorted(sections.enter, row, side="right")
+        # The last section begun; outside of it also the next one.
+        return is_unknown[begun - 1] | (is_unknown[begun] & (self.trace.mode.section < 0))
 
     def _numbers(self, *addresses: str) -> list[int]:
         return [self.trace.machine.address_number(address) for address in addresses]

@@ -70,7 +70,7 @@ def with_reference(loaded: Loaded, case: Case, case_runs: Mapping[str, CaseRun])
 def _path_of_run(of_case: CaseRun, name: str) -> ToolPath:
     """Return the path of a program by its name, tool or programmed; controls lift Z in the mode or behind it."""
     path = tool_path(of_case.moves[name], of_case.sense)
-    return path[~path.is_z_alone]
+    return path[~path.is_still]
 
 
 def _not_compared(why: str) -> near_path.Comparison:

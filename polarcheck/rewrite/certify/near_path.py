@@ -14,11 +14,7 @@ from polarcheck.reports import counted
 from polarcheck.rewrite.certify.golden import GoldenTrace, changed_orders
 from polarcheck.rewrite.certify.tool_path import ToolPath, tool_path
 from polarcheck.rewrite.compare.differences import common_pieces
-
-#: F differs if it does so by more than this share: digits that a trace rounds away are no change.
-_SAME_FEED = 1e-6
-#: Angles that differ by less [deg] are the same.
-_SAME_ANGLE = 1e-6
+from polarcheck.rewrite.compare.terms import EXACT
 
 
 class Comparison(NamedTuple):
@@ -59,7 +55,7 @@ def with_golden(
         return 0.0, ""
 
     if golden_trace.is_old:
-        ours, golden = (path[~path.is_z_alone] for path in (ours, golden))
+        ours, golden = (path[~path.is_still] for path in (ours, golden))
     comparison = _compared(ours, golden, tolerance, title, turned_by)
     if not comparison.reasons and comparison.deviation is not None:
         for number in range(len(ours.turned)):
@@ -188,7 +184,7 @@ def _deviation(mine: ToolPath, theirs: ToolPath, turned: float, tolerance: float
 def _turn_that_fits(mine: ToolPath, theirs: ToolPath, turned: float, tolerance: float) -> float | None:
     """Return the angle by which the other path lies turned as a whole [deg]; None where it is another path."""
     begins = _turn_of_starts(mine, theirs)
-    if abs(_wrapped(begins - turned)) < _SAME_ANGLE or _deviation(mine, theirs, begins, tolerance) > tolerance:
+    if abs(_wrapped(begins - turned)) < EXACT or _deviation(mine, theirs, begins, tolerance) > tolerance:
         return None
     return begins
 
@@ -226,7 +222,7 @@ def _feed_change(mine: ToolPath, theirs: ToolPath, tolerance: float) -> tuple[in
     ours, golden, length = common_pieces(mine.space(), theirs.space())
     now, before = mine.feed[ours], theirs.feed[golden]
     is_rapid, was_rapid = mine.rapid[ours], theirs.rapid[golden]
-    differs = ~np.isclose(now, before, rtol=_SAME_FEED, atol=0, equal_nan=True) & ~(is_rapid & was_rapid)
+    differs = ~np.isclose(now, before, rtol=EXACT, atol=0, equal_nan=True) & ~(is_rapid & was_rapid)
     differs = (differs | (is_rapid != was_rapid)) & (length > 2 * tolerance)
     if not differs.any():
         return None

@@ -48,11 +48,6 @@ class ToolPath(PlanePath, frozen=True):
         return SpacePath(*self.turned_by(np.exp(1j * np.radians(turned))).shape, self.z_from, self.z_to)
 
     @property
-    def is_z_alone(self) -> Mask:
-        """Moves that stand still on the plane."""
-        return np.asarray((self.start == self.end) & ~self.is_arc)
-
-    @property
     def farthest(self) -> float:
         """The largest distance of its corners from the center of C [mm]."""
         return float(np.abs(self.end).max(initial=0.0))

@@ -111,8 +111,7 @@ def _without_changes(trace: Trace, moves: Moves, terms: Terms) -> Moves:
     rows = np.unique(moves.row)
     changed = np.flatnonzero(terms.may_change(trace, WAY)[rows])
     may_change = np.isin(moves.row, rows[np.union1d(changed, np.maximum(changed - 1, 0))])
-    is_z_alone = (moves.start == moves.end) & ~moves.is_arc
-    return moves[~(may_change | (is_z_alone & terms.may_change(trace, Z)[moves.row]))]
+    return moves[~(may_change | (moves.is_still & terms.may_change(trace, Z)[moves.row]))]
 
 
 def _by_section(trace: Trace, steps: Sequence[Step]) -> dict[int, list[Step]]:

@@ -11,7 +11,7 @@ from polarcheck.columns.trace import Trace
 from polarcheck.rewrite.compare.comparison_report import Difference
 from polarcheck.rewrite.compare.differences import Part
 from polarcheck.rewrite.compare.orders import speed_in_force
-from polarcheck.rewrite.compare.terms import ANGLE, Terms
+from polarcheck.rewrite.compare.terms import Terms
 from polarcheck.rules.quantity import rounded
 from polarcheck.rules.wording.offsets import called_tool
 
@@ -86,7 +86,7 @@ def entry_differences(old: Part, new: Part, *, is_same_machine: bool, terms: Ter
         apart = abs(value - new_value)
         if what == "c_angle":
             apart = min(apart, 360 - apart)
-        least = {"c_angle": ANGLE, "radius": terms.tolerance}.get(what, 0.0)
+        least = {"c_angle": terms.angle, "radius": terms.tolerance}.get(what, 0.0)
         if (np.isnan(value) and np.isnan(new_value)) or apart <= least:
             continue
         if what in ("radius", "c_angle") and np.isnan(apart):

@@ -33,8 +33,6 @@ _M_LISTS = (*(name for pair in SWITCHED for name in pair), "spindle_orientation"
 #: M5 stops whichever spindle runs, and M3 starts a live tool without codes of its own: which one turns where a section
 #: begins is compared there.
 _ANY_SPINDLE = {"live_tool_on": "spindle_on", "live_tool_off": "spindle_off"}
-#: Speeds are whole numbers: those by G96 are rounded where the units are others.
-SAME_SPEED = 1.0
 
 
 def shift_steps(trace: Trace) -> list[Step]:

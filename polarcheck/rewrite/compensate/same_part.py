@@ -17,7 +17,7 @@ from polarcheck.rewrite.compensate.ramp_moves import Contour, Ramped
 from polarcheck.rewrite.compensate.sides import Swept
 from polarcheck.rewrite.writing.original import Original
 from polarcheck.rewrite.writing.outcome import Refusal, RefusedError, refused_at
-from polarcheck.rewrite.writing.reading_back import changed_around, read_back_on_part
+from polarcheck.rewrite.writing.reading_back import read_back_on_part, require_equal
 
 #: The number of points compared along each contour, and the points near corners, as shares of a piece.
 _POINTS, _NEAR_CORNERS = 400, (0.0, 0.02, 0.1, 0.9, 0.98)
@@ -69,10 +69,9 @@ def require_same_part(
     radius = max(contour.section.radius for contour in contours)
     step = float(np.max(trace.lengths.least_step))
     finer = [share * radius for share in _FINER]
-    result = read_back_on_part(original, data, original.settings, origin, _FARTHEST * radius, finer=finer)
-    changed = changed_around(original, result.new)
-    if result.differences or changed:
-        raise RefusedError([*result.differences, *changed])
+    farthest = _FARTHEST * radius
+    result = read_back_on_part(original, data, original.settings, origin, farthest, finer=finer, keeps_sections=True)
+    require_equal(result)
     new_moves: Moves = result.new.tables["tool_center"].moves
     new_milled: Milled = result.new.tables["milled"]
     now = Swept(result.new.trace, new_moves, new_milled.radius[new_moves.row])

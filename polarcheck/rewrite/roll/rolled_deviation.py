@@ -15,6 +15,7 @@ from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.straight_axes.spiral_pieces import along, distances
 from polarcheck.geometry.tolerances import ZERO
 from polarcheck.rewrite.compare.compared_sections import NOWHERE
+from polarcheck.rewrite.compare.terms import FEED_SHARE, lines_before
 from polarcheck.rewrite.roll.entries import Entry
 from polarcheck.rewrite.roll.rollable import Stretch
 from polarcheck.rewrite.roll.rolled_blocks import Writer
@@ -27,8 +28,6 @@ from polarcheck.rewrite.writing.outcome import Refusal
 
 #: Places on a block at which it is measured.
 _PLACES = np.linspace(0.125, 1, 8)[None, :]
-#: F may differ from what was meant to be written by this share: its digits.
-_SAME_FEED = 1e-3
 
 
 class Section(msgspec.Struct, frozen=True):
@@ -75,7 +74,7 @@ def measured_of(
     [mm].
     """
     trace, moves = new.trace, new.tables["tool_center"].moves
-    stands_for = np.array([0, *origin])[np.minimum(trace.blocks.line_in_file, len(origin))]
+    stands_for = lines_before(trace, origin)
     enters = stands_for[trace.mode.sections.enter].tolist()
     number_of = dict(zip(enters, range(len(enters)), strict=True))
     differences: list[Refusal] = []
@@ -118,7 +117,7 @@ def _feeds(section: Section, moves: Moves, of_line: Rows, trace: Trace) -> list[
     index = np.clip(np.searchsorted(intended, moves.feed), 1, max(len(intended) - 1, 1))
     nearest = np.minimum(*(np.abs(moves.feed / intended[np.minimum(index - n, len(intended) - 1)] - 1) for n in (0, 1)))
     per_minute = trace.feedrate.feed_mode[moves.row] == FeedMode.PER_MINUTE
-    wrong = (moves.kind != Motion.RAPID) & ~((nearest <= _SAME_FEED) & per_minute)
+    wrong = (moves.kind != Motion.RAPID) & ~((nearest <= FEED_SHARE) & per_minute)
     return [Refusal(int(line), "F of the result is not the one that was meant") for line in of_line[wrong][:1]]
 
 

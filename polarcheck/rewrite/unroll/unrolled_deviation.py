@@ -15,7 +15,7 @@ from polarcheck.foundation.states import MM_PER_INCH, FeedMode, Motion
 from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.straight_axes.spiral_pieces import along, distances
 from polarcheck.rewrite.compare.parts_compared import outside_compared
-from polarcheck.rewrite.compare.terms import Terms
+from polarcheck.rewrite.compare.terms import EXACT, FEED_SHARE, Terms
 from polarcheck.rewrite.unroll.axis_blocks import Steps, x_factor
 from polarcheck.rewrite.unroll.unrolled_feeds import method_of
 from polarcheck.rewrite.writing.order_refusals import changed_orders, refusal_of
@@ -56,7 +56,7 @@ def depths(old: Trace, new: Trace, within: Mask) -> Iterator[Refusal]:
     differs = ~(np.abs(old.path.z[before] - new.path.z[after]) <= tolerance)
     differs |= old.axes.motion[before] != new.axes.motion[after]
     feeds = old.feedrate.feed[before], new.feedrate.feed[after]
-    differs |= (old.axes.motion[before] != Motion.RAPID) & ~(np.abs(feeds[0] - feeds[1]) <= 1e-3 * feeds[0])
+    differs |= (old.axes.motion[before] != Motion.RAPID) & ~(np.abs(feeds[0] - feeds[1]) <= FEED_SHARE * feeds[0])
     for index in np.flatnonzero(differs)[:1].tolist():
         yield refusal_at(old, before[index], "Z or its F would differ")
 
@@ -66,9 +66,6 @@ _LISTED = 10
 #: Samples of each block, and blocks per batch.
 _PLACES = np.linspace(0, 1, 17)[None, :]
 _TOGETHER = 20_000
-#: Tolerance for rounding of F, C and X, as a share.
-_SHARE = 1e-3
-_SAME = 1e-6
 #: How far apart the tool may stand at an order [mm].
 _AT_ORDERS = 0.1
 
@@ -112,7 +109,7 @@ def measured(
         return Measured([Refusal(_line(old, steps, int(unknown[0])), text)], [])
     differences += _places(old, run, steps)
     distance = _distance(old, center.moves, run, steps)
-    far = np.flatnonzero(~(distance <= chord_error + _SAME))
+    far = np.flatnonzero(~(distance <= chord_error + EXACT))
     if len(far):
         worst = int(far[np.argmax(distance[far])])
         text = f"the tool would be {distance[worst]:.4f} mm away from its path, above {chord_error:.4f} mm"
@@ -199,9 +196,9 @@ class _Run:
 def _places(old: Trace, run: _Run, steps: Steps) -> Iterator[Refusal]:
     """Yield a refusal for the first block that does not end at its intended position."""
     scale = (x_factor(old) * old.lengths.least_step)[steps.row]
-    differs = ~(np.abs(run.x - steps.x * scale) <= _SAME) | ~(np.abs(run.turn - steps.turn) <= _SAME)
+    differs = ~(np.abs(run.x - steps.x * scale) <= EXACT) | ~(np.abs(run.turn - steps.turn) <= EXACT)
     z = steps.z * old.lengths.least_step[steps.row]
-    differs |= ~np.isnan(z) & ~(np.abs(run.z - z) <= _SAME)
+    differs |= ~np.isnan(z) & ~(np.abs(run.z - z) <= EXACT)
     differs |= run.is_rapid
     for index in np.flatnonzero(differs)[:1].tolist():
         yield Refusal(_line(old, steps, index), "X, C or Z would not be where the tool center goes")
@@ -244,9 +241,9 @@ def _speeds(old: Trace, run: _Run, steps: Steps) -> Iterator[Refusal]:
     limits = old.machine.limits
     checks = (
         (~(run.time > 0), "how long this takes is not known"),
-        (run.time < steps.time * (1 - _SHARE), "the tool would be faster than in the mode"),
-        (run.c_rate > limits.c_feed * (1 + _SHARE), "C would be above its limit"),
-        (run.x_rate > limits.x_feed * (1 + _SHARE), "X would be above its limit"),
+        (run.time < steps.time * (1 - FEED_SHARE), "the tool would be faster than in the mode"),
+        (run.c_rate > limits.c_feed * (1 + FEED_SHARE), "C would be above its limit"),
+        (run.x_rate > limits.x_feed * (1 + FEED_SHARE), "X would be above its limit"),
     )
     for hits, text in checks:
         for index in np.flatnonzero(hits)[:1].tolist():

@@ -10,15 +10,12 @@ import numpy as np
 from polarcheck.columns.trace import Trace
 from polarcheck.rewrite.compare.comparison_report import Difference, SectionPair
 from polarcheck.rewrite.compare.order_differences import order_differences
-from polarcheck.rewrite.compare.order_meanings import SAME_SPEED, meaning_steps, names_speeds, speed_steps
+from polarcheck.rewrite.compare.order_meanings import meaning_steps, names_speeds, speed_steps
 from polarcheck.rewrite.compare.orders import Step, steps
+from polarcheck.rewrite.compare.terms import DWELL, EXACT, SPEED
 from polarcheck.rewrite.writing.outcome import Refusal
 from polarcheck.rewrite.writing.part_paths import PartPath
 
-#: Values of orders that differ by no more are the same, as lengths [mm].
-_SAME = 1e-6
-#: Dwells that differ by no more are the same [s]: a control counts thousandths.
-_SAME_DWELL = 1e-3
 #: Words of M, S and T in a text.
 _COMMANDS = re.compile(r"\b[MST]\d")
 
@@ -50,7 +47,7 @@ def changed_orders(
         return Difference("place", text, old_line=step.line, new_line=new_step.line)
 
     before, after = (steps(trace, is_same_machine=True, with_sides=False) for trace in (old, new))
-    for difference in order_differences(before, after, _SAME, moved):
+    for difference in order_differences(before, after, EXACT, moved):
         if difference.old_line is not None or _COMMANDS.search(difference.text):
             yield refusal_of(difference)
 
@@ -63,14 +60,14 @@ def changed_meanings(
     differs.
     """
     ordered = [step for step in meaning_steps(old) if step.line not in decided]
-    for difference in order_differences(ordered, meaning_steps(new), _SAME_DWELL):
+    for difference in order_differences(ordered, meaning_steps(new), DWELL):
         if difference.old_line is not None:
             yield refusal_of(difference)
     if names_speeds(old) and names_speeds(new):
         left_out = {*decided, *added_speeds}
         before = [step for step in speed_steps(old) if step.line not in left_out]
         after = [step for step in speed_steps(new) if line_of(origin, step.line) not in left_out]
-        for difference in order_differences(before, after, SAME_SPEED)[:1]:
+        for difference in order_differences(before, after, SPEED)[:1]:
             yield refusal_of(difference)
 
 

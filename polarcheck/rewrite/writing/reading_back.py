@@ -15,15 +15,13 @@ from polarcheck.foundation.finding import SEVERITIES, Finding, Severity
 from polarcheck.geometry.comparison.path_deviation import path_deviation
 from polarcheck.rewrite.compare.comparison_report import Comparison
 from polarcheck.rewrite.compare.revision_comparison import Revision, compared, default_tolerance
-from polarcheck.rewrite.compare.terms import Terms
+from polarcheck.rewrite.compare.terms import TIME, TIME_SHARE, Terms, lines_before
 from polarcheck.rewrite.writing.order_refusals import changed_meanings, changed_orders, line_of, refusal_of
 from polarcheck.rewrite.writing.original import Original, read
 from polarcheck.rewrite.writing.outcome import Refusal, RefusedError
 from polarcheck.rewrite.writing.part_paths import CHORD, path_on_part
 from polarcheck.rules.rule import Rule, load_all
 
-#: Times of a section that differ by less than this share, or by less than this [s], are the same.
-_SAME_SHARE, _SAME_TIME = 2e-3, 0.02
 #: Rules about orders to spindles, the C axis and tools: what another lathe needs is to be decided.
 OF_ORDERS = frozenset(
     (
@@ -122,14 +120,16 @@ def read_back_on_part(
     left_out: Collection[int] = (),
     noted: Collection[str] = (),
     finer: Sequence[float] = (),
+    *,
+    keeps_sections: bool = False,
 ) -> ReadBack:
     """
     Compare a program whose sections have another form with the original: with the mode or without it, compensated or
     not, divided into moves differently.
 
     Compared are the path of the tool on the part inside and outside sections, with Z and its order, the meaning of
-    codes, and the findings of a check. The caller compares F. The deviation includes that of chords from the true path
-    of X and C.
+    codes, and the findings of a check. The caller compares F, unless sections are kept. The deviation includes that of
+    chords from the true path of X and C.
 
     settings: of the new program.
     origin: for each of its lines the line in the original, from 1.
@@ -140,13 +140,15 @@ def read_back_on_part(
     noted: groups of rules whose errors are notes: they are about states of the original that matter only in the mode.
     finer: ascending tolerances that are tried first [mm]: the deviation is measured up to the first one that the paths
     keep.
+    keeps_sections: the sections are divided into other moves alone: F outside of them, their depths, values of F and
+    the state at their beginning are compared.
 
     Raises RefusedError where a position of the original is not known, or the new program cannot be run once.
     """
     new = read(original.path, data, settings)
     old_path, new_path = (path_on_part(program.tables, chord=chord) for program in (original, new))
     if left_out:
-        stands_for = np.array([0, *origin])[np.minimum(new.trace.blocks.line_in_file, len(origin))]
+        stands_for = lines_before(new.trace, origin)
         old_path = old_path[~np.isin(original.trace.blocks.line_in_file[old_path.row], list(left_out))]
         new_path = new_path[~np.isin(stands_for[new_path.row], list(left_out))]
     for within in (*finer, tolerance):
@@ -172,15 +174,9 @@ def read_back_on_part(
             notes.setdefault(rule.name, f"line {refusal.line}: {refusal.text}")
         else:
             differences.append(refusal)
+    if keeps_sections:
+        differences += _of_comparison(_comparison(original, new, has_other_moves=True))
     return ReadBack(new, differences[:_LISTED], largest, list(notes.values()))
-
-
-def changed_around(original: Original, new: Original) -> list[Refusal]:
-    """
-    Return what differs around the moves of sections that are divided otherwise: outside of them, in their depths,
-    values of F, and the state at their beginning.
-    """
-    return [*_of_comparison(_comparison(original, new, has_other_moves=True))]
 
 
 def _comparison(original: Original, new: Original, **terms: Any) -> Comparison:
@@ -232,7 +228,7 @@ def _times(result: Comparison) -> Iterator[Refusal]:
         if section.old is None or section.new is None:
             continue
         was, is_now = section.old.time, section.new.time
-        if was is not None and is_now is not None and abs(was - is_now) > max(_SAME_TIME, _SAME_SHARE * was):
+        if was is not None and is_now is not None and abs(was - is_now) > max(TIME, TIME_SHARE * was):
             yield Refusal(section.old.line, f"the section takes {was:.2f} s, and would take {is_now:.2f} s")
 
 
