@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from polarcheck.columns.contour.offset_passes import OddPoint, odd_points
 from polarcheck.columns.contour.passes import Passes, numbered
-from polarcheck.columns.contour.written_passes import WrittenDifference, written_differences
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Columns, Mask, Points, Rows, cached_property
 from polarcheck.foundation.states import Side
+
+if TYPE_CHECKING:
+    from polarcheck.columns.contour.offset_passes import OddPoint
+    from polarcheck.columns.contour.written_passes import WrittenDifference
 
 #: Points nearer to each other than this [mm] are the same, and how far off a point is that differs.
 _SAME, _OTHER = 1e-4, 0.004
@@ -60,6 +62,11 @@ class PassDifferences(Columns, frozen=True):
         differences = [one for group in self._by_group for one in group if not {one.row, one.other} & shown]
         return {difference.row: difference for difference in reversed([*differences, *self._alone, *self._of_words])}
 
+    @property
+    def _are_several(self) -> bool:
+        """True if two passes are long enough to be contours."""
+        return np.count_nonzero(self.passes.last - self.passes.first >= _LEAST_AGREEING) > 1
+
     @cached_property
     def _alone(self) -> list[Difference]:
         """The differences of passes that are in no group."""
@@ -68,6 +75,10 @@ class PassDifferences(Columns, frozen=True):
     @cached_property
     def _beside(self) -> list[Difference]:
         """The passes that lie beside another one but for a point, as a finish and its roughing."""
+        if not self._are_several:
+            return []
+        from polarcheck.columns.contour.offset_passes import odd_points  # imported late: most contours have one pass
+
         passes, row = self.passes, self.passes.row
         differences = []
         for odd in odd_points(passes):
@@ -86,6 +97,10 @@ class PassDifferences(Columns, frozen=True):
     @cached_property
     def _written(self) -> list[WrittenDifference]:
         """Passes that are written otherwise, and of which the points alone tell nothing."""
+        if not self._are_several:
+            return []
+        from polarcheck.columns.contour.written_passes import written_differences  # imported late, as above
+
         known = np.array([one.row for group in (*self._by_group, self._alone) for one in group], np.int64)
         return [
             other
