@@ -15,7 +15,10 @@ if TYPE_CHECKING:
     "{misfit}: {remedy} {as_meant}",
     values=("word", "word_needed"),
     subject="shape",
-    follows={"loop": ("arc-end-off-circle", "arc-radius-too-small", "arc-center-on-path", "start-up-off-contour")},
+    follows={
+        "loop": ("arc-end-off-circle", "arc-radius-too-small", "arc-center-on-path", "start-up-off-contour"),
+        "section": ("rapid-in-polar",),
+    },
     doubts=(("position", "loop"),),
     is_symptom=True,
 )
