@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     subject="shape",
     follows={
         "loop": ("arc-end-off-circle", "arc-radius-too-small", "arc-center-on-path", "start-up-off-contour"),
-        "section": ("rapid-in-polar",),
+        "section": ("rapid-in-polar", "contour-open-with-infeed"),
     },
     doubts=(("position", "loop"),),
     is_symptom=True,
