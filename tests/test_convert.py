@@ -755,7 +755,7 @@ SURFACE = "%\nO1\nG20 G99\nT0101\nG96 S600 M3\nG0 X2. Z.1\nG1 Z-.5 F.01\nG97 S80
         (HEAD + MILLED + TURNED + END, "fanuc-30i", "siemens-transmit", "TRAFOOF\nDIAMON\nG18\nG0 X50. Z2.\n"),
         (HEAD + TURNED + MILLED + END, "fanuc-30i", "okuma-osp", "G2 X52. Z-1. L1.\n"),
         # N75 stands behind: new blocks take no number of the file.
-        (HEAD + JUMPS, "fanuc-30i", "haas-lathe", "G18\nF900\nN76"),
+        (HEAD + JUMPS, "fanuc-30i", "haas-lathe", "G18\nF900.\nN76"),
         (HEAD + DRILLED + MILLED + END, SOURCE, "haas-lathe", "(DECIDE: G83 Z-20. R-8."),
         (HEAD + CYCLES + MILLED + END, SOURCE, "mitsubishi-m700", "(DECIDE: G70 P80 Q90: ITS CONTOUR)\n"),
         (HEAD + SECOND + END, "fanuc-30i", "siemens-transmit", "%_N_O2_MPF\nG90 DIAMON\n"),
