@@ -180,10 +180,11 @@ def outside(trace: Trace, steps: Sequence[Step], rows: Rows, terms: Terms) -> St
     is_left_out = left_out[rows]
     row = rows[moving & ~is_left_out]
     starts, path = trace.blocks.starts, trace.path
-    columns = [(before(column, starts, np.nan)[row], column[row]) for column in (path.x, path.z, path.c_angle)]
+    earlier = [before(column, starts, np.nan) for column in (path.x, path.z, path.c_angle)]
     # At its end in a section X counts on the plane; the mode is left with X where the machine stands.
-    left = np.flatnonzero(before(trace.mode.section, starts, -1)[row] >= 0)
-    columns[0][0][left] = np.abs(path.end[row[left] - 1])
+    left = np.flatnonzero((trace.mode.section < 0) & (before(trace.mode.section, starts, -1) >= 0))
+    earlier[0][left] = np.abs(path.end[left - 1])
+    columns = [(column[row], after[row]) for column, after in zip(earlier, (path.x, path.z, path.c_angle), strict=True)]
     needs = ""
     written = (("X", "U"), ("Z", "W"), trace.machine.polar.rotary_words)
     for (_, after), words in zip(columns, written, strict=True):
@@ -191,7 +192,7 @@ def outside(trace: Trace, steps: Sequence[Step], rows: Rows, terms: Terms) -> St
         if lost.any() and not needs:
             needs = f"{words[0]} of line {int(trace.blocks.line_in_file[row[np.argmax(lost)]])} is not known"
     if terms.is_rewritten and len(rows):
-        positions = [before(column, starts, np.nan)[rows[0]] for column in (path.x, path.z, path.c_angle)]
+        positions = [column[rows[0]] for column in earlier]
         named = [trace.blocks.has(*words)[row] for words in written]
         columns = [
             _following_on(here, start, np.where(names, end, np.nan))
