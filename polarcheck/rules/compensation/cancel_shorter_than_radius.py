@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     worse=("-length", "length_needed"),
     gouges=True,
     at=("compensation_off",),
-    doubts=(("metal", "block"),),
+    doubts=(("metal", "block"), ("rapid", "tool call")),
     follows={"loop": ("inside-arc-smaller-than-radius", "start-up-shorter-than-radius")},
     is_symptom=True,
 )

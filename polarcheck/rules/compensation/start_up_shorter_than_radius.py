@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     worse=("-length", "length_needed"),
     gouges=True,
     at=("compensation_left", "compensation_right"),
-    doubts=(("metal", "loop"),),
+    doubts=(("metal", "loop"), ("rapid", "tool call")),
     follows={"loop": ("inside-arc-smaller-than-radius",), "X before": ("uncompensated-cut-into-part",)},
     is_symptom=True,
 )
