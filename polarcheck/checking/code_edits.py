@@ -14,6 +14,7 @@ import numpy as np
 from polarcheck.columns.contour.loop_edits import Edit
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Rows
+from polarcheck.foundation.states import Side
 from polarcheck.rules.editing import Replace, content_of, is_head, is_plain, separator, without, words_of
 
 #: Moves of a path from either end within which a finding may come from the ramp there.
@@ -88,10 +89,20 @@ def _absolute(trace: Trace, word: int) -> Iterator[list[CodeEdit]]:
 
 
 def unneeded(trace: Trace, own: Rows) -> Iterator[list[CodeEdit]]:
-    """Without a code of compensation or of increments in the middle of a path, or alone in a block beside it."""
+    """
+    Without a code of compensation or of increments in the middle of a path, or alone in a block beside it.
+
+    The one code that begins the compensation of a path is needed: without it nothing could be told of its ramps.
+    """
     machine = trace.machine
-    keys = ("compensation_left", "compensation_right", "incremental", "absolute")
-    words = trace.blocks.code_indices(*(code for key in keys for code in machine.codes(key)))
+    sides, steps = (
+        trace.blocks.code_indices(*(code for key in keys for code in machine.codes(key)))
+        for keys in (("compensation_left", "compensation_right"), ("incremental", "absolute"))
+    )
+    of_side = trace.run.row[sides]
+    is_in_force = trace.compensation.side_before[of_side] != Side.OFF
+    comes_again = np.arange(len(sides)) < np.searchsorted(of_side, own[-1], side="right") - 1
+    words = np.sort(np.append(sides[is_in_force | comes_again], steps))
     rows = trace.run.row[words]
     for word, row in zip(words.tolist(), rows.tolist(), strict=True):
         is_inside = own[0] < row < own[-1]

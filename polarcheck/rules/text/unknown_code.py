@@ -23,6 +23,7 @@ OWN_CODES_END = 100
     worse=("count",),
     over="words",
     subject="word",
+    follows={"file": ("polar-switch-unknown",)},
 )
 def unknown_code(
     words: Words, written: Written, machine: Machine, other_mode: OtherMode, switch_slips: SwitchSlips
