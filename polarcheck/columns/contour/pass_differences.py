@@ -65,7 +65,7 @@ class PassDifferences(Columns, frozen=True):
     @property
     def _are_several(self) -> bool:
         """True if two passes are long enough to be contours."""
-        return np.count_nonzero(self.passes.last - self.passes.first >= _LEAST_AGREEING) > 1
+        return bool(np.count_nonzero(self.passes.last - self.passes.first >= _LEAST_AGREEING) > 1)
 
     @cached_property
     def _alone(self) -> list[Difference]:
