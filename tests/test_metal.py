@@ -30,6 +30,15 @@ def test_a_hexagon_is_sound() -> None:
     assert found(f"{HEAD}/{CONTOUR}/{END}", **bar(40)) == {}
 
 
+@looped(("x", "expected"), [("54.", {}), ("44.", {"approach-inside-stock": "error"})])
+def test_beyond_the_turned_bar_no_wall_stands(x: str, expected: dict[str, str]) -> None:
+    """Two flats, each longer than the spigot of 31 mm is wide: beside it the line of the other is in the air."""
+    turning = "T0303/G97 S1500 M3/G0 X31. Z2. G99/G1 Z-17. F0.2/X34./G0 X100. Z50./M5/T0101/G98/G28 H0/G97 S3000 M13"
+    flat = "G12.1/G1 C-22. F800/X40./G42 X20. F80/C22./G40 X40. F800/G13.1/G0 Z2."
+    program = f"G21/{turning}/G0 X{x} Z2. C0/Z-5./{flat}/C90./X54./Z-5./{flat}/X100. Z50./M30"
+    assert found(program, 8) == expected
+
+
 @pytest.mark.ci
 @looped("job", [{}, bar(40), bar(60)], one_in=3)
 def test_an_index_with_the_cutter_in_a_hole_goes_through_the_part(job: dict[str, object]) -> None:

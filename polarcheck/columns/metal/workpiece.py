@@ -354,7 +354,7 @@ class Workpiece(Columns, frozen=True):
     @cached_property
     def _over_contour(self) -> ToolMoves:
         """
-        Moves outside of sections to a place within the reach of a contour and no higher than it.
+        Moves outside of sections to a place within the reach of a contour and of the bar, no higher than the contour.
 
         Rapid traverse, and the first move behind a section at feed: a retract is missing there.
         """
@@ -371,7 +371,8 @@ class Workpiece(Columns, frozen=True):
             return moves[low]
         farthest = polar.farthest(*walls.shape)
         reach = float(np.max(farthest + np.where(self._walls_of_pockets, 2 * self.overcuts.radius[walls.row], 0)))
-        return moves[low & (moves.nearest - moves.radius < reach)]
+        near = moves.nearest - moves.radius
+        return moves[low & (near < reach) & ~(near >= self.bar.outer(moves.row, moves.tip))]
 
     @property
     def _highest_wall(self) -> float:
