@@ -6,7 +6,7 @@ import numpy as np
 
 from polarcheck.columns.metal.air_cuts import AirCuts, row_of_infeed
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Columns, Floats, Mask, Points, Rows, Table, cached_property
+from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, Table, cached_property, different, first_of_each
 from polarcheck.geometry.tolerances import ROUNDING
 
 #: A step is far off the others if it is as many times as large.
@@ -54,8 +54,8 @@ class PassDepths(Columns, frozen=True):
         if len(first) < _FEWEST:
             return Passes(rows[first], z[first], *np.zeros((2, len(first)), np.int64))
         number = np.repeat(np.arange(len(first)), np.diff(np.append(first, len(rows))))
-        point = _numbered(np.rint(trace.path.end[rows] / _SAME / 4))
-        contour = _shapes(number, _numbered(point * (section.max() + 1) + section))
+        point = first_of_each(np.rint(trace.path.end[rows] / _SAME / 4))[1]
+        contour = _shapes(number, first_of_each(point * (section.max() + 1) + section)[1])
         return Passes(rows[first], z[first], contour, _shapes(number, point))
 
     @cached_property
@@ -87,10 +87,11 @@ class PassDepths(Columns, frozen=True):
 
         One of these alone may be meant: a shaft is milled across its shoulder, a wall is milled in one pass.
         """
-        passes, bar = self.passes, self.air_cuts.bar
+        bar = self.air_cuts.bar
         turned = bar.deepest_turned
-        if not len(passes) or not np.isfinite(turned):
+        if not np.isfinite(turned) or not len(self.passes):
             return []
+        passes = self.passes
         section, z = self.trace.mode.section[passes.row], passes.z * bar.trace.path.z_sense
         step = np.where(np.diff(section, prepend=-1) == 0, np.append(0.0, z[:-1]), 0.0) - z
         width = 2 * self.air_cuts.workpiece.radius[passes.row]
@@ -146,18 +147,13 @@ def _groups(passes: Passes, key: Rows, fewest: int) -> list[Passes]:
     return [passes[group] for group in np.split(order, first[1:]) if len(group) >= fewest]
 
 
-def _numbered(values: Floats | Points | Rows) -> Rows:
-    """Per value its number among the different ones."""
-    return np.unique(values, return_inverse=True)[1]
-
-
 def _shapes(number: Rows, point: Rows) -> Rows:
     """Per pass a number of its points, without those that no other pass has: the first and the last have leads."""
     size = point.max() + 1
-    of_pass, point = np.divmod(np.unique(number * size + point), size)
+    of_pass, point = np.divmod(different(number * size + point), size)
     weight = np.where(np.bincount(point)[point] > 1, np.sin(point + 1.0), 0.0)
     total = np.bincount(of_pass, weight)
-    return _numbered(np.where(total, total, -_ALONE * (1.0 + np.arange(len(total)))))
+    return first_of_each(np.where(total, total, -_ALONE * (1.0 + np.arange(len(total)))))[1]
 
 
 def _is_slip(written: float, intended: float) -> bool:
