@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from polarcheck.columns.contour.passes import numbered
 from polarcheck.columns.metal.bar import Bar
 from polarcheck.columns.metal.workpiece import Workpiece
 from polarcheck.columns.trace import Trace
@@ -168,13 +169,15 @@ class AirCuts(Columns, frozen=True):
         trace, path, section = self.trace, self.trace.path, self.trace.mode.section
         high = self.walls & self._idle_behind & (path.z > _ABOVE) & (path.z >= self._entry - ROUNDING)
         high &= ~trace.compensation.compensates & ~path.moves_z
-        rows, mask = np.flatnonzero(self.walls), np.zeros(len(trace), bool)
-        ways = np.stack([path.start[rows], path.end[rows], np.nan_to_num(path.center[rows])], axis=1)
-        for row in np.flatnonzero(high).tolist():
-            same = np.abs(ways - ways[np.searchsorted(rows, row)]).max(axis=1) <= _SAME
-            same &= (section[rows] == section[row]) & (trace.feedrate.feed[rows] == trace.feedrate.feed[row])
-            mask[row] = bool((path.z[rows[same]] < -_ABOVE).any())
-        return mask
+        if not high.any():
+            return high
+        rows = np.flatnonzero(self.walls)
+        points = path.start[rows], path.end[rows], np.nan_to_num(path.center[rows])
+        # Words of thousandths lie off the limits between two numbers.
+        parts = [np.rint(part / _SAME + 0.25) for point in points for part in (point.real, point.imag)]
+        way = numbered([*parts, section[rows].astype(np.float64), trace.feedrate.feed[rows]])
+        is_cut_below = np.bincount(way, path.z[rows] < -_ABOVE) > 0
+        return high & mask_at(len(trace), rows[is_cut_below[way]])
 
     @property
     def _sign_wrong(self) -> Mask:
