@@ -15,7 +15,7 @@ _FAR = 3.0
 _LEAST, _FEWEST = 3, 2
 #: A step that is as many times as large as the least has left out a pass.
 _SKIPPED = 1.5
-#: Less than any sum of sines: the number of a pass that shares no point.
+#: More than any sum of sines: below its negative are the numbers of passes that share no point.
 _ALONE = 1e6
 #: Points that are nearer than this are one [mm].
 _SAME = 2e-3
@@ -148,7 +148,11 @@ def _groups(passes: Passes, key: Rows, fewest: int) -> list[Passes]:
 
 
 def _shapes(number: Rows, point: Rows) -> Rows:
-    """Per pass a number of its points, without those that no other pass has: the first and the last have leads."""
+    """
+    Per pass a number of its points, without those that no other pass has: the first and the last have leads.
+
+    It is a sum of sines, which is the same for the same points in any order, and for no others.
+    """
     size = point.max() + 1
     of_pass, point = np.divmod(different(number * size + point), size)
     weight = np.where(np.bincount(point)[point] > 1, np.sin(point + 1.0), 0.0)

@@ -79,12 +79,11 @@ class PassDifferences(Columns, frozen=True):
             return []
         from polarcheck.columns.contour.offset_passes import odd_points  # imported late: most contours have one pass
 
-        passes, row = self.passes, self.passes.row
-        differences = []
-        for odd in odd_points(passes):
-            first, last = (int(row[ends[passes.number[odd.model]]]) for ends in (passes.first, passes.last))
-            differences.append(Difference(int(row[odd.move]), int(row[odd.model]), False, first, last, odd))
-        return differences
+        row, number = self.passes.row, self.passes.number
+        return [
+            Difference(int(row[odd.move]), int(row[odd.model]), False, *self._rows_of(int(number[odd.model])), odd)
+            for odd in odd_points(self.passes)
+        ]
 
     @property
     def _of_words(self) -> list[Difference]:
@@ -137,25 +136,28 @@ class PassDifferences(Columns, frozen=True):
                 row, other = (
                     int(begins[np.searchsorted(begins, first[which], "right") - 1]) for which in (number, beside[0])
                 )
-                begin, end = (int(passes.row[ends[beside[0]]]) for ends in (passes.first, passes.last))
-                differences.append(Difference(row, other, False, begin, end))
+                differences.append(Difference(row, other, False, *self._rows_of(int(beside[0]))))
         return differences
+
+    def _rows_of(self, number: int) -> tuple[int, int]:
+        """The first and the last row of a pass."""
+        passes = self.passes
+        return int(passes.row[passes.first[number]]), int(passes.row[passes.last[number]])
 
     @cached_property
     def twin(self) -> Rows:
         """The same number for all rows of passes that are compared, where one of them differs; -1 for other rows."""
-        column = np.full(len(self.trace), -1)
-        for number, other in enumerate(self._written, len(self._groups) + len(self._alone)):
-            for rows in (other.rows, other.model):
-                column[rows[0] : rows[-1] + 1] = number
-        passes = self.passes
-        for number, ((_, group), differences) in enumerate(zip(self._groups, self._by_group, strict=True)):
-            for which in group.tolist() if differences else ():
-                column[passes.row[passes.first[which]] : passes.row[passes.last[which]] + 1] = number
-        for number, difference in enumerate(self._alone, len(self._groups)):
-            which = passes.number[np.searchsorted(passes.row, difference.row)]
-            column[passes.row[passes.first[which]] : passes.row[passes.last[which]] + 1] = number
-            column[difference.first : difference.last + 1] = number
+        column, passes = np.full(len(self.trace), -1), self.passes
+        groups = zip(self._groups, self._by_group, strict=True)
+        alike = [[self._rows_of(which) for which in group.tolist()] if found else [] for (_, group), found in groups]
+        for one in self._alone:
+            which = passes.number[np.searchsorted(passes.row, one.row)]
+            alike.append([self._rows_of(int(which)), (one.first, one.last)])
+        written = [[(int(rows[0]), int(rows[-1])) for rows in (one.rows, one.model)] for one in self._written]
+        # Where a pass is in several, its points count more than its words.
+        for number, stretches in enumerate([*written, *alike]):
+            for first, last in stretches:
+                column[first : last + 1] = number
         return column
 
     @cached_property
@@ -253,9 +255,7 @@ class PassDifferences(Columns, frozen=True):
             )
         if not explained:
             return None
-        passes = self.passes
-        first, last = (int(passes.row[ends[model]]) for ends in (passes.first, passes.last))
-        return Difference(row, model_row, differing[0] < differing[1], first, last)
+        return Difference(row, model_row, differing[0] < differing[1], *self._rows_of(model))
 
     def _turns_at(self, move: int) -> bool:
         """The pass turns where a move of it ends that the other one does not have: it is no point on a line."""
