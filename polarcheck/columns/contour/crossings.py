@@ -6,11 +6,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from polarcheck.columns.contour.passes import Passes
+from polarcheck.columns.contour.passes import LEADS, Passes
 from polarcheck.columns.path.path import NOWHERE
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Columns, Floats, Mask, Points, Rows, cached_property
-from polarcheck.foundation.states import Motion
+from polarcheck.foundation.states import Motion, Side
 from polarcheck.geometry.plane import angle_between, arc_sweep
 
 #: Turn [rad] from which on a block runs back the way that the one before it came, and how far it must do so [mm].
@@ -23,6 +23,8 @@ _TOLERANCE = 0.02
 _SHORT = 300
 #: Passes that are searched, and their moves.
 _MOST, _MOST_MOVES = 200, 20_000
+#: Moves that end so near to each other meet there [mm].
+_MEETS = 0.1
 #: Moves at the ends of an open contour that may be leads.
 _ENDS = 2
 
@@ -82,25 +84,26 @@ class Crossings(Columns, frozen=True):
         passes = self.passes
         first = np.where(passes.closed, passes.ring[0], passes.first)
         last = np.where(passes.closed, passes.ring[1], passes.last)
-        count = last - first + 1
-        chosen = np.flatnonzero(passes.is_wall & (count > 3) & ((count <= _SHORT) | ~self._goes_round_once))
-        if not len(chosen):
-            return []
-        chosen = chosen[~self._is_convex[chosen]]
+        count, all_count = last - first + 1, passes.last - passes.first + 1
+        searched = (count > 3) & ((count <= _SHORT) | ~self._goes_round_once) & ~self._is_convex
+        searched |= self._is_outer & (count < all_count) & (count <= _SHORT)
+        chosen = np.flatnonzero(passes.is_wall & searched)
         if len(chosen) > 1:
             shape = passes.shape[chosen]
             order = np.argsort(shape, kind="stable")
             chosen = np.sort(chosen[order[np.append(True, np.diff(shape[order]) != 0)]])
         chosen = chosen[:_MOST]
-        chosen = chosen[np.cumsum(count[chosen]) <= _MOST_MOVES]
-        pairs = [self._crossing_of(int(first[which]), int(last[which]), bool(passes.closed[which])) for which in chosen]
+        chosen = chosen[np.cumsum(all_count[chosen]) <= _MOST_MOVES]
+        pairs = [self._crossing_of(which) for which in chosen.tolist()]
         return [crossing for crossing in pairs if crossing is not None]
 
-    def _crossing_of(self, first: int, last: int, closed: bool) -> _CrossingMoves | None:
+    def _crossing_of(self, which: int) -> _CrossingMoves | None:
+        """The first crossing of moves of a pass; where it closes a ring, of two of the ring, or of one and a lead."""
         from polarcheck.geometry.segments import Curves, segments
         from polarcheck.geometry.self_crossing import self_crossings
 
-        passes, moves = self.passes, np.arange(first, last + 1)
+        passes, first, last = self.passes, self.passes.first[which], self.passes.last[which]
+        moves = np.arange(first, last + 1)
         kind = np.where(np.isnan(passes.center[moves]), Motion.LINE, passes.motion[moves])
         loop = np.zeros(len(moves), np.int64)
         curves = Curves(passes.start[moves], passes.end[moves], passes.center[moves], kind, loop, passes.row[moves])
@@ -108,12 +111,27 @@ class Crossings(Columns, frozen=True):
         crossing = self_crossings(parts.start, parts.end)
         earlier, later = moves[parts.move[crossing.earlier]], moves[parts.move[crossing.later]]
         keep = earlier != later
-        if not closed:
+        if passes.closed[which]:
+            rings = passes.in_ring[earlier].astype(int) + passes.in_ring[later]
+            keep &= (rings == 2) | ((rings == 1) & self._is_outer[which])
+            # Leads meet the ring where it begins, and may themselves be closed.
+            is_end = (earlier - first <= LEADS) & (last - later <= LEADS)
+            ends = (np.stack((passes.start[of], passes.end[of])) for of in (earlier, later))
+            meets = [np.abs(points - crossing.place).min(axis=0) <= _MEETS for points in ends]
+            keep &= ~(is_end & meets[0] & meets[1])
+        else:
             keep &= (earlier >= first + _ENDS) & (later <= last - _ENDS)
         if not keep.any():
             return None
         nearest = np.flatnonzero(keep)[np.argmin(later[keep])]
         return _CrossingMoves(later[[nearest]], earlier[[nearest]], crossing.place[[nearest]], np.zeros(1, bool))
+
+    @cached_property
+    def _is_outer(self) -> Mask:
+        """Per pass: it closes a ring that has the part inside. Into a pocket a lead may come through its open side."""
+        total = np.add.reduceat(sum(self._turning), self.passes.first)
+        side = self.trace.compensation.side[self.passes.row[self.passes.first]]
+        return np.asarray(self.passes.closed & (total * np.where(side == Side.RIGHT, 1, -1) > 0))
 
     # ---- cheap tests: which passes cannot cross themselves ----
 
