@@ -51,6 +51,31 @@ def test_what_differs_in_the_last_of_three_passes(old: str, new: str, expected: 
     assert different(program(old, new)) == expected
 
 
+@looped(
+    ("old", "new", "which", "expected"),
+    [
+        # A word that the other passes have: the pass that lacks it is wrong, be it the first one.
+        ("G42 X40. C0.", "G42 C0.", 0, {7: 15}),
+        ("G42 X40. C0.", "G42 C0.", 2, {23: 7}),
+        ("G42 X40. C0.", "G42 X04. C0.", 2, {23: 7}),
+        # Each pass may begin, and leave the contour, where it likes; what is in force need not be written again.
+        ("G42 X40. C0.", "G42 X40. C5.", 2, {}),
+        ("G40 X80. C0.", "G40 X80.", 2, {}),
+        ("G40 X80. C0.", "G40 X08. C0.", 2, {}),
+        ("G42 X40. C0.", "G42 X40.", 2, {}),
+    ],
+)
+def test_a_word_of_the_first_block_is_lost_or_mistyped(
+    old: str, new: str, which: int, expected: dict[int, int]
+) -> None:
+    assert different(program(old, new, which)) == expected
+
+
+def test_of_two_passes_the_one_that_lacks_a_word_is_wrong() -> None:
+    text = program("G42 X40. C0.", "G42 C0.", 0).replace(BLOCKS.format(-6), "")
+    assert different(text) == {7: 15}
+
+
 @looped(("old", "line"), [("X-36.2", 25), ("X40. C-22.9", 27)])
 def test_increments_in_one_pass_are_told_by_the_others(old: str, line: int) -> None:
     text = program(old, f"G91 {old}")

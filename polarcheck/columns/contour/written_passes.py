@@ -1,4 +1,4 @@
-"""Passes that are written with the same numbers, and differ in a code, a letter or the order of two blocks."""
+"""Passes written with the same numbers but for a code, a letter or the order of two blocks; or all but one word."""
 
 from __future__ import annotations
 
@@ -8,12 +8,17 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from polarcheck.columns.contour.passes import numbered
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Floats, Rows
 from polarcheck.foundation.states import Side
 
 #: Blocks of a pass, and of those the least that are alike; blocks with other words, or other compensation.
 _FEWEST, _MOST, _ALIKE, _DIFFERING = 5, 200, 3, 2
+#: Passes of as many blocks that are compared with each other.
+_SHAPES = 12
+#: Ends nearer to each other than this are one [mm]; numbers, too.
+_APART, _ROUNDING = 0.004, 1e-6
 #: Words of moves; a number of more digits is rounded [digits].
 _ADDRESSES, _DIGITS = "XUCHYVIJRL", 5
 #: States of a block that may differ: numbers of motions, of increments, and of compensation.
@@ -31,7 +36,7 @@ class WrittenDifference(NamedTuple):
 
 
 def written_differences(trace: Trace) -> Iterator[WrittenDifference]:
-    """The passes that differ from the most frequent one with the same numbers; of as many, from the one above."""
+    """The passes that differ from the most frequent one of as many blocks; of those as frequent, from the one above."""
     values = np.stack([trace.blocks.word(address) for address in _ADDRESSES])
     rows = np.flatnonzero(trace.mode.in_polar & ~np.isnan(values).all(axis=0))
     begins = (trace.path.moves_z & ~trace.path.travels) | trace.mode.enters
@@ -47,18 +52,29 @@ def written_differences(trace: Trace) -> Iterator[WrittenDifference]:
     total = np.add.reduceat(np.add.reduce(number, axis=0, dtype=np.uint64), first)
     shape = np.add.reduceat(_mixed(index.astype(np.float64)) * (words + state.astype(np.uint64)), first)
     program = trace.blocks.program[rows[first]]
-    keys = np.stack([total[chosen], count[chosen].astype(np.uint64), program[chosen].astype(np.uint64)], axis=1)
-    _, group, members = np.unique(keys, axis=0, return_inverse=True, return_counts=True)
-    for which in np.flatnonzero(members > 1).tolist():
-        passes = chosen[group.reshape(-1) == which]
+    group = numbered([count[chosen].astype(np.float64), program[chosen].astype(np.float64)])
+    for which in np.flatnonzero(np.bincount(group) > 1).tolist():
+        passes = chosen[group == which]
         _, begin, frequency = np.unique(shape[passes], return_index=True, return_counts=True)
-        order = begin[np.lexsort((begin, -frequency))]
-        model = first[passes[order[0]]] + np.arange(count[passes[0]])
-        for other in passes[order[1:]].tolist():
+        order = begin[np.lexsort((begin, -frequency))][:_SHAPES]
+        for rank, other in enumerate(passes[order].tolist()):
             own = first[other] + np.arange(count[other])
-            row = _difference(words[own] != words[model], state[own], state[model])
-            if row is not None and trace.run.block[rows[own[row]]] != trace.run.block[rows[model[row]]]:
-                yield WrittenDifference(rows[own], rows[model], row)
+            for earlier in passes[order[:rank]].tolist():
+                model = first[earlier] + np.arange(count[other])
+                is_otherwise = words[own] != words[model]
+                if total[other] == total[earlier]:
+                    row = _difference(is_otherwise, state[own], state[model])
+                else:
+                    # A block that moves nothing hands its ramp to the next one.
+                    is_otherwise |= state[own] % _COMPENSATION != state[model] % _COMPENSATION
+                    row = int(np.argmax(is_otherwise)) if np.count_nonzero(is_otherwise) == 1 else None
+                    if row is not None and _lacks_word(values[:, rows[model[row]]], values[:, rows[own[row]]]):
+                        own, model = model, own
+                    if row is not None and not _is_slip(trace, rows[own[row]], rows[model[row]], values):
+                        row = None
+                if row is not None and trace.run.block[rows[own[row]]] != trace.run.block[rows[model[row]]]:
+                    yield WrittenDifference(rows[own], rows[model], row)
+                    break
 
 
 def _mixed(values: Floats) -> _Hash:
@@ -92,3 +108,25 @@ def _difference(is_otherwise: NDArray[np.bool_], own: Rows, model: Rows) -> int 
     if max(np.count_nonzero(is_otherwise), np.count_nonzero(phases)) > _DIFFERING:
         return None
     return int(differs[0])
+
+
+def _lacks_word(ours: Floats, theirs: Floats) -> bool:
+    """A block has the words of another one but for one that it lacks."""
+    same = (ours == theirs) | (np.isnan(ours) & np.isnan(theirs))
+    return bool(np.count_nonzero(~same) == 1 and np.isnan(ours[~same][0]))
+
+
+def _is_slip(trace: Trace, row: int, model: int, values: Floats) -> bool:
+    """A block of a contour leads elsewhere than that of the model, since a word is missing or its number is a slip."""
+    if trace.compensation.cancels[row] or not abs(trace.path.end[row] - trace.path.end[model]) > _APART:
+        return False
+    ours, theirs = values[:, row], values[:, model]
+    if _lacks_word(ours, theirs):
+        return True
+    odd = np.flatnonzero((ours != theirs) & ~(np.isnan(ours) & np.isnan(theirs)))
+    if len(odd) != 1 or np.isnan(theirs[odd[0]]):
+        return False
+    from polarcheck.columns.words.slips import plain_number, slip_of  # few passes differ
+
+    slip = slip_of(plain_number(float(ours[odd[0]])), float(theirs[odd[0]]), _ROUNDING)
+    return slip is not None and slip.plain
