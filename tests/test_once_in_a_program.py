@@ -176,3 +176,19 @@ def test_a_missing_line_behind_an_arc_is_written_with_its_code() -> None:
     assert any(
         "with G1 X-28. C18. in a block of its own before this one, it would" in message for message in messages
     ), messages
+
+
+@pytest.mark.parametrize("without_depth", range(4))
+def test_one_of_four_pockets_that_is_cut_in_air_is_one_finding(without_depth: int) -> None:
+    centers = ((40, 0), (0, 20), (-40, 0), (0, -20))
+    pockets = "".join(
+        f"G1 X{x}. C{c}. F1500/{'' if number == without_depth else 'Z-3.'} F60/G41 X{x + 12}. F120/G3 I-6. J0/"
+        f"G1 G40 X{x}./Z2. F1500/"
+        for number, (x, c) in enumerate(centers)
+    )
+    program = f"O1/G21 G98 G40/T0808/G97 S3000 M13/G28 H0/G0 X50. C0 Z2./G12.1/{pockets}G13.1/G0 X100. Z50./M5/M30"
+    report = report_of(program.replace("/", "\n"), "fanuc-30i", "8:radius=3,nose=0")
+    found = [finding for finding in report.findings if finding.severity != "note"]
+    assert [finding.rule for finding in found] == ["cut-in-air"], found
+    assert "at Z2 of line" in found[0].message
+    assert "a Z word for the depth is missing" in found[0].message

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     values=("z",),
     once="section",
     subject="stock",
+    doubts=(("metal", "section"), ("rapid", "tool call")),
     follows={"section": (*OUT_OF_PLACE, "contour-at-two-depths", "z-with-plane-axis", "helical-arc-in-polar")},
 )
 def cut_in_air(air_cuts: AirCuts) -> Hits:
@@ -164,7 +165,7 @@ def _in_air(hit: Hit, air_cuts: AirCuts, bar: Bar) -> str:
                 other = hit.number(-trace.path.z[row])
                 return f"cuts at {z}{where}, and other cuts are at Z{other}: the sign of Z is missing"
             why = "and the program cuts below Z0 elsewhere: a Z word for the depth is missing"
-            return f"cuts at {z}{where}, where the section begins, {why}"
+            return f"cuts at {z}{where}, {why}"
         case Reason.OUTSIDE_BAR:
             largest = 2 * bar_ends_at(hit, bar)
             return f"runs outside the bar of {hit.length(largest)} all the way: check the units and X"
