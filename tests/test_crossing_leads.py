@@ -43,3 +43,30 @@ def test_a_lead_in_through_the_part_is_told() -> None:
 )
 def test_leads_beside_the_part_are_told_nothing(lead_in: str, close: str, lead_out: str) -> None:
     assert "contour-crosses-itself" not in dict(told(lead_in, close, lead_out))
+
+
+def test_increments_of_which_the_leads_cross_add_up() -> None:
+    text = """G21 G90 G98 T0909
+G0 X63. Z2. C0
+G12.1
+G1 X53. C13.202 F800.
+Z-5.5
+G41 X44. F150.
+G91 C-22.404
+X-6.062 C-5.25
+X-31.876 C-9.201
+X-12.124
+X-31.876 C9.201
+X-6.062 C5.25
+C18.404
+X6.062 C5.25
+X31.876 C9.201
+X12.124
+X31.876 C-9.201
+X10.062 C-8.714
+G40 G90 X63. C8. F800.
+Z2.
+G13.1
+M30
+"""
+    assert report_of(text, "mazak-eia", "9:radius=2.5").findings == []

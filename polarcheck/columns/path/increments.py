@@ -9,7 +9,7 @@ from polarcheck.columns.path.path import NOWHERE
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Columns, Floats, Mask, Points, Rows, cached_property, column_at
 from polarcheck.foundation.states import Motion
-from polarcheck.geometry.plane import arc_sweep
+from polarcheck.geometry.plane import arc_sweep, cross
 from polarcheck.program.machines.axis_table import INCREMENTS
 
 #: Share of the moves of a contour that are increments, and the least number of moves.
@@ -80,6 +80,8 @@ class Increments(Columns, frozen=True):
         near = max(_LEAST, rounding)
         if not near < gap[i, j] < _SHARE * size:
             return None
+        if _cross(starts, passes.end[head], passes.start[tail], ends):
+            return None
         if _nearest(ends[j], starts, passes.end[head]) <= near or _nearest(starts[i], passes.start[tail], ends) <= near:
             return None
         return int(passes.row[tail[j]]), complex(ends[j]), complex(starts[i])
@@ -93,6 +95,13 @@ class Increments(Columns, frozen=True):
     def gap(self) -> Floats:
         """In these rows the distance from the end of the contour to its start [mm]; 0 in others."""
         return column_at(len(self.trace), self._gaps[0], np.abs(self._gaps[1] - self._gaps[2]), 0.0)
+
+
+def _cross(start: Points, end: Points, second_start: Points, second_end: Points) -> bool:
+    """One of some lines crosses one of some others, as leads do where the contour is closed; arcs as their chords."""
+    a, b, c, d = start[:, None], end[:, None], second_start[None, :], second_end[None, :]
+    parted = cross(b - a, c - a) * cross(b - a, d - a) < 0
+    return bool((parted & (cross(d - c, a - c) * cross(d - c, b - c) < 0)).any())
 
 
 def _nearest(point: complex, start: Points, end: Points) -> float:
