@@ -14,6 +14,7 @@ from polarcheck.columns.path.tool_center import ToolCenter
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Columns, Floats, Mask, Points, Rows, cached_property
 from polarcheck.foundation.states import Motion
+from polarcheck.geometry import polar
 from polarcheck.geometry.tolerances import ROUNDING
 
 #: A tip less far below the face than this touches nothing [mm].
@@ -103,15 +104,27 @@ class Approaches(Columns, frozen=True):
         Of these rows, those from which the cutter goes to the rim of the bar before it is lifted above the face.
 
         A pocket is within, and plunged into. What counts is the tool center: the wall of a pocket lies R farther out.
+        Where a cutter stays nearer to X0 than the contour that it cuts, its ramps do not count: one that leaves the
+        pocket is wrong, and not the approach.
         """
-        trace, rows = self.trace, self._plunges
-        rises = ~self._is_below | np.append(True, np.diff(trace.mode.section) != 0)
+        trace, rows, below = self.trace, self._plunges, self._is_below
+        rises = ~below | np.append(True, np.diff(trace.mode.section) != 0)
         stretch = np.cumsum(rises)
-        farthest = np.full(int(stretch[-1]) + 1 if len(stretch) else 0, -np.inf)
-        below = self._is_below
-        np.fmax.at(farthest, stretch[below], self.tool_center.farthest[below])
-        reach = farthest[stretch[rows]] + np.nan_to_num(trace.offsets.cutter_diameter[rows]) / 2
+        walls = below & trace.compensation.compensates & trace.path.travels & ~trace.compensation.starts_up
+        center = self._farthest(self.tool_center.farthest, walls, stretch)
+        programmed = np.full(len(trace), -np.inf)
+        programmed[walls] = polar.farthest(*trace.path.moves_of(np.flatnonzero(walls)).shape)
+        is_within = center < self._farthest(programmed, walls, stretch) - ROUNDING
+        farthest = np.where(is_within, center, self._farthest(self.tool_center.farthest, below, stretch))
+        reach = farthest[rows] + np.nan_to_num(trace.offsets.cutter_diameter[rows]) / 2
         return np.asarray(reach > self._inner + ROUNDING)
+
+    @staticmethod
+    def _farthest(distance: Floats, rows: Mask, stretch: Rows) -> Floats:
+        """The largest distance [mm] in some rows of each stretch, for each row; -inf without such a row."""
+        farthest = np.full(int(stretch[-1]) + 1, -np.inf)
+        np.fmax.at(farthest, stretch[rows], distance[rows])
+        return np.asarray(farthest[stretch])
 
     @cached_property
     def _was_clear(self) -> Mask:
