@@ -211,3 +211,64 @@ def test_what_was_meant_is_named_with_the_finding_about_the_word(
     ]
     assert finding.line == len(HEAD) + lines.index(wrong) + 1
     assert words in finding.message
+
+
+#: A pocket of 40 x 20, R 6 in its corners, in two passes; lifted between them.
+POCKET = [
+    *("G41 X40. F200", "C4.", "G3 X28. C10. R6.", "G1 X-28.", "G3 X-40. C4. R6."),
+    *("G1 C-4.", "G3 X-28. C-10. R6.", "G1 X28.", "G3 X40. C-4. R6.", "G1 C0", "G40 X30. F1500"),
+]
+POCKETS = [*HEAD[:4], "G1 X30. C0 F1500", "Z-2. F60", *POCKET, "Z-4. F60", *POCKET, *TAIL[1:]]
+PASSES = [*HEAD, *ROUNDED, "G40 X50. F1500", "Z2.", "Z-8. F300", *ROUNDED, *TAIL]
+BARE = [*HEAD[:-1], "X46. C0", HEAD[-1], "X40. F200", *ROUNDED[1:], "X46. F1500", *TAIL[1:]]
+
+
+@looped(
+    ("lines", "right", "wrong", "rule", "words"),
+    [
+        # A code too many in a path that nothing compensates.
+        (BARE, ["G3 X34. C10. R3."], ["G41", "G3 X34. C10. R3."], "nearly-regular-contour", "without G41"),
+        # Blocks exchanged before the cancel, which becomes an arc without center.
+        (
+            [*HEAD, *ROUNDED, *TAIL],
+            ["G3 X40. C-7. R3.", "G1 C0"],
+            ["G1 C0", "G3 X40. C-7. R3."],
+            "nearly-regular-contour",
+            "behind the next one",
+        ),
+        # G40 a block too early.
+        (
+            [*HEAD, "G42 X40. F200", "G3 X-40. R20.", "X40. R20.", "G40 G1 X60. F1500", *TAIL[1:]],
+            ["X40. R20.", "G40 G1 X60. F1500"],
+            ["G40 X40. R20.", "G1 X60. F1500"],
+            "cancel-on-arc",
+            "G1 block after the arc",
+        ),
+        # Of two passes the first is wrong, and nothing objects to it but that the second one differs.
+        (POCKETS, ["G3 X-40. C4. R6."], ["G3 X-40. C2. R6."], "nearly-regular-contour", "C4."),
+        (PASSES, ["G42 X40. F200"], ["G41 X40. F200"], "side-of-compensation-mirrored", "G42"),
+        (PASSES, ["G1 X50. F1500"], ["G0 X50. F1500"], "rapid-in-polar", "G1"),
+    ],
+)
+def test_one_slip_is_one_finding(lines: list[str], right: list[str], wrong: list[str], rule: str, words: str) -> None:
+    text = "\n".join(lines) + "\n"
+    slipped = text.replace("\n".join(["", *right, ""]), "\n".join(["", *wrong, ""]), 1)
+    assert slipped != text
+    sound, found = (
+        [one for one in report_of(program, "fanuc-30i", "1:radius=2").findings if one.severity != "note"]
+        for program in (text, slipped)
+    )
+    assert sound == []
+    assert [one.rule for one in found] == [rule]
+    assert words in found[0].message
+
+
+def test_a_ramp_that_leaves_a_pocket_is_wrong_and_not_its_approach() -> None:
+    text = "\n".join(POCKETS) + "\n"
+    slipped = text.replace("G40 X30. F1500", "G40 X130. F1500", 1)
+    job = {"stock": {"diameter": 70.0}}
+    sound, found = (report_of(program, "fanuc-30i", "1:radius=2", job=job).findings for program in (text, slipped))
+    assert sound == []
+    assert [(one.rule, one.line) for one in found] == [
+        ("start-up-sweeps-contour", slipped.split("X130.")[0].count("\n") + 1)
+    ]

@@ -92,7 +92,8 @@ def unneeded(trace: Trace, own: Rows) -> Iterator[list[CodeEdit]]:
     """
     Without a code of compensation or of increments in the middle of a path, or alone in a block beside it.
 
-    The one code that begins the compensation of a path is needed: without it nothing could be told of its ramps.
+    The one code that begins the compensation of a path is needed: without it nothing could be told of its ramps. One
+    that begins it on an arc, where no G40 takes it back, is not.
     """
     machine = trace.machine
     sides, steps = (
@@ -102,7 +103,11 @@ def unneeded(trace: Trace, own: Rows) -> Iterator[list[CodeEdit]]:
     of_side = trace.run.row[sides]
     is_in_force = trace.compensation.side_before[of_side] != Side.OFF
     comes_again = np.arange(len(sides)) < np.searchsorted(of_side, own[-1], side="right") - 1
-    words = np.sort(np.append(sides[is_in_force | comes_again], steps))
+    ramps = np.append(np.flatnonzero(trace.compensation.starts_up), own[0])
+    ramp = ramps[np.searchsorted(ramps[:-1], of_side)]
+    has_cancel = (trace.compensation.writes_cancel & (trace.mode.section == trace.mode.section[own[0]]))[own[0] :].any()
+    is_on_arc = ~has_cancel & trace.path.is_arc[ramp]
+    words = np.sort(np.append(sides[is_in_force | comes_again | is_on_arc], steps))
     rows = trace.run.row[words]
     for word, row in zip(words.tolist(), rows.tolist(), strict=True):
         is_inside = own[0] < row < own[-1]

@@ -33,8 +33,9 @@ from polarcheck.rules.places import PLACES
 from polarcheck.rules.rule import Hits
 from polarcheck.rules.tables import Tables
 
-#: The rule that reports an edit; its own findings are explanations, and no symptoms.
-REPORTS = "nearly-regular-contour"
+#: The rule that reports an edit; its own findings are explanations, and no symptoms. The rule that compares paths:
+#: either of them may be wrong.
+REPORTS, COMPARES = "nearly-regular-contour", "passes-differ"
 #: Paths of a file that are searched, edits of each that are tried, and rows of all trials of a file together.
 _MOST_LOOPS, _TRIALS, _MOST_ROWS = 8, 5, 20_000
 #: By how much less a second edit may explain, for both to be named [coordinates]; how many are named.
@@ -107,6 +108,11 @@ def _is_symptom(engine: Engine, finding: Finding) -> bool:
     return SEVERITIES[finding.severity] >= WARNING and engine.rules[finding.rule].is_symptom
 
 
+def _lines(finding: Finding) -> set[int]:
+    """The lines of a finding: both where it compares two."""
+    return {finding.line, int(finding.values["other_line"])} if finding.rule == COMPARES else {finding.line}
+
+
 class _Search:
     def __init__(self, engine: Engine, number: int) -> None:
         self.engine, self.trace, self.number = engine, engine.trace, number
@@ -119,7 +125,7 @@ class _Search:
     def explanations(self, findings: Sequence[Finding]) -> Iterator[_Explained]:
         """One explanation at most for each path with a symptom."""
         trace = self.trace
-        lines = {finding.line for finding in findings}
+        lines = set[int]().union(*map(_lines, findings))
         rows = np.flatnonzero(np.isin(trace.blocks.line, [*lines]) & (trace.mode.section >= 0))
         sections = np.flatnonzero(np.bincount(trace.mode.section[rows], minlength=1)).tolist()
         loops = list(islice(written_loops(trace, sections), _MOST_LOOPS))
@@ -128,7 +134,7 @@ class _Search:
         reach = [set(trace.blocks.line[slice(*rows)].tolist()) for rows in zip(begins, ends, strict=False)]
         known: set[_Symptom] = set()
         for loop, own_lines in zip(loops, reach, strict=True):
-            own = {(finding.rule, finding.line) for finding in findings if finding.line in own_lines}
+            own = {(finding.rule, finding.line) for finding in findings if _lines(finding) & own_lines}
             if not own <= known:
                 others = (other for other in reach if other is not own_lines and other & lines)
                 found = self._explained(loop, own_lines, set[int]().union(*others) - own_lines)

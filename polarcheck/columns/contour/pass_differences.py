@@ -146,7 +146,10 @@ class PassDifferences(Columns, frozen=True):
 
     @cached_property
     def twin(self) -> Rows:
-        """The same number for all rows of passes that are compared, where one of them differs; -1 for other rows."""
+        """
+        The same number for all rows of passes that are compared, where one of them differs, and for the rows beside
+        them, which are their ramps; -1 for other rows.
+        """
         column, passes = np.full(len(self.trace), -1), self.passes
         groups = zip(self._groups, self._by_group, strict=True)
         alike = [[self._rows_of(which) for which in group.tolist()] if found else [] for (_, group), found in groups]
@@ -155,9 +158,10 @@ class PassDifferences(Columns, frozen=True):
             alike.append([self._rows_of(int(which)), (one.first, one.last)])
         written = [[(int(rows[0]), int(rows[-1])) for rows in (one.rows, one.model)] for one in self._written]
         # Where a pass is in several, its points count more than its words.
-        for number, stretches in enumerate([*written, *alike]):
-            for first, last in stretches:
-                column[first : last + 1] = number
+        for ramp in (1, 0):
+            for number, stretches in enumerate([*written, *alike]):
+                for first, last in stretches:
+                    column[max(first - ramp, 0) : last + 1 + ramp] = number
         return column
 
     @cached_property

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     "G40 takes effect on an arc; cancel in a G1 block after the arc",
     at=("compensation_off", "arc_clockwise", "arc_counterclockwise"),
     subject="move",
-    doubts=(("metal", "block"),),
+    doubts=(("metal", "block"), ("metal", "X before")),
     follows={"compensation": ("compensation-without-contour",)},
     is_symptom=True,
 )

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     subject="",
     doubts=END_IN_DOUBT,
     follows={"block": ("arc-off-polar-plane",)},
+    is_symptom=True,
 )
 def arc_without_center(path: ProgrammedPath, arcs: Arcs) -> Mask:
     """
