@@ -456,6 +456,8 @@ def _joint(
     one, other = contour.pieces[index - 1], contour.pieces[index % len(contour.pieces)]
     if one.center is None and other.center is None:
         return point + (first + last) / (1 + (first * last.conjugate()).real) * by
+    if one.center is not None and other.center is not None:
+        return _joint_of_arcs(point, (one.center, first), (other.center, last), by)
     arc, line = (one, behind) if one.center is not None else (other, before)
     assert arc.center is not None
     normal = sign * line
@@ -467,6 +469,21 @@ def _joint(
     away = abs(base - along * line)
     step = math.sqrt(max(size * size - away * away, 0.0))
     places = [arc.center + base - along * line + line * way for way in (step, -step)]
+    return min(places, key=lambda place: abs(place - point))
+
+
+def _joint_of_arcs(
+    point: complex, before: tuple[complex, complex], behind: tuple[complex, complex], by: float
+) -> complex:
+    """Where two arcs meet at a distance; of each its center and the normal at the point where they meet as drawn."""
+    sizes = [
+        abs(point - center) + (by if ((point - center) * normal.conjugate()).real > 0 else -by)
+        for center, normal in (before, behind)
+    ]
+    way = behind[0] - before[0]
+    along = (abs(way) ** 2 + sizes[0] ** 2 - sizes[1] ** 2) / (2 * abs(way))
+    aside = math.sqrt(max(sizes[0] ** 2 - along**2, 0.0))
+    places = [before[0] + way / abs(way) * complex(along, side) for side in (aside, -aside)]
     return min(places, key=lambda place: abs(place - point))
 
 

@@ -14,6 +14,7 @@ import pytest
 import shapely  # type: ignore[import-untyped]
 from cases import looped
 from metal_simulation import differs, levels, metal_at, simulate
+from milled_shapes import lobes, shifted
 from programs import ROOT
 from setter_dialects import DIALECTS
 from setter_programs import FAMILIES, drawn
@@ -121,3 +122,15 @@ def test_slips_are_told_once_and_the_remedy_repairs() -> None:
 def test_two_slips_are_both_told() -> None:
     found = slips.pairs(10, 1)
     assert sum(pair.told == 2 for pair in found) >= 8
+
+
+@looped("seed", range(12))
+def test_arcs_at_a_distance_end_on_circles_about_their_centers(seed: int) -> None:
+    draw = random.Random(seed)  # noqa: S311 - contours that can be drawn again
+    drawn_one = lobes(draw, lambda least, most: round(draw.uniform(least, most), 1))
+    aside = shifted(drawn_one, 2.5)
+    ends, ends_aside = drawn_one.points(), aside.points()
+    for index, piece in enumerate(drawn_one.pieces):
+        assert piece.center is not None
+        sizes = [abs(point - piece.center) for point in (ends[index], *ends_aside[index : index + 2])]
+        assert [size - sizes[0] for size in sizes[1:]] == pytest.approx([2.5, 2.5])
