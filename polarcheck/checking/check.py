@@ -288,11 +288,10 @@ def report_of(engine: Engine, number: int = 0) -> FileReport:
 
         read_in_turn(engine, remainder.missing, functools.partial(getattr, remainder))
     found = engine.findings()
-    less_regular = remainder.less_regular
-    if less_regular or any(engine.rules[finding.rule].is_symptom for finding in found):
-        from polarcheck.checking.explanations import explained  # imported late: most files have no symptom
+    if remainder.less_regular or found:
+        from polarcheck.checking.explanations import explained  # imported late: most files have no finding
 
-        found = explained(engine, found, number, less_regular)
+        found = explained(engine, found, number, lambda trial: _Remainder(trial).less_regular)
     findings, silenced = divided(in_order(in_the_file(found, trace, engine.answered, engine.rows_in_calls)))
     missing = [entry for rule in engine.rules.values() for entry in remainder.missing(rule)]
     bounds = bounds_not_reported(tables, _all(findings))

@@ -8,7 +8,7 @@ checked. An edit explains the findings that are gone then, if no other finding h
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from itertools import chain, islice
 from typing import NamedTuple
 
@@ -16,28 +16,25 @@ import msgspec
 import numpy as np
 
 from polarcheck.checking.code_edits import CodeEdit, exchanged, ramp_edits, unneeded, unskipped
-from polarcheck.checking.edits import applied, origins
+from polarcheck.checking.edits import origins
 from polarcheck.checking.engine import Engine, with_following
+from polarcheck.checking.hidden_findings import REPORTS, edited, is_told, with_hidden
 from polarcheck.columns.contour.correction import Correction
-from polarcheck.columns.contour.likely_edits import LEAST_IF_WHOLE, Likely, correction_by, likely_edits
+from polarcheck.columns.contour.likely_edits import LEAST_IF_WHOLE, Likely, correction_by, likely_edits, likely_pairs
+from polarcheck.columns.contour.loop_edits import Edit
 from polarcheck.columns.contour.written_loop import WrittenLoop, written_loops
 from polarcheck.columns.words.slips import WORD
 from polarcheck.foundation.arrays import Rows
 from polarcheck.foundation.errors import TooHardError
-from polarcheck.foundation.finding import SEVERITIES, WARNING, Finding, Silenced, Undecided
-from polarcheck.program.execution.runs import runs
-from polarcheck.program.reading.source import read_source
+from polarcheck.foundation.finding import SEVERITIES, WARNING, Finding
 from polarcheck.rules.editing import Replace, in_place_of, is_plain, with_word, without, words_of
-from polarcheck.rules.other_machine import OtherMachine
 from polarcheck.rules.places import PLACES
 from polarcheck.rules.rule import Hits
-from polarcheck.rules.tables import Tables
 
-#: The rule that reports an edit; its own findings are explanations, and no symptoms. The rule that compares paths:
-#: either of them may be wrong.
-REPORTS, COMPARES = "nearly-regular-contour", "passes-differ"
-#: Paths of a file that are searched, edits of each that are tried, and rows of all trials of a file together.
-_MOST_LOOPS, _TRIALS, _MOST_ROWS = 8, 5, 20_000
+#: The rule that compares paths: either of them may be wrong.
+_COMPARES = "passes-differ"
+#: Paths of a file that are searched, edits and pairs of edits of each that are tried, rows of all trials of a file.
+_MOST_LOOPS, _TRIALS, _PAIRS, _MOST_ROWS = 8, 5, 4, 20_000
 #: By how much less a second edit may explain, for both to be named [coordinates]; how many are named.
 _AS_LIKELY, _NAMED = 0.5, 2
 #: By how much less one may explain that removes all findings of a path, where likelier ones leave some [coordinates].
@@ -61,6 +58,8 @@ class _Explained(NamedTuple):
 
     row: of its block. edits: of the text. gone: the symptoms that it removes. left: those that are there with it.
     other: a second one that is as likely. is_named: False where several values of the block do so, and none is named.
+    is_whole: nothing is left of the findings of the path. is_of_two: it is one of two mistakes, and may remove nothing
+    by itself.
     """
 
     likely: Likely
@@ -70,47 +69,64 @@ class _Explained(NamedTuple):
     left: frozenset[_Symptom]
     other: _Explained | None = None
     is_named: bool = True
+    is_whole: bool = False
+    is_of_two: bool = False
 
 
-def explained(
-    engine: Engine, findings: Sequence[Finding], number: int, less_regular: Sequence[tuple[Rows, Correction]]
-) -> list[Finding]:
+#: The rows of contours of a run that an edit makes more regular.
+LessRegular = Callable[[Engine], Sequence[tuple[Rows, Correction]]]
+
+
+def explained(engine: Engine, findings: list[Finding], number: int, less_regular: LessRegular) -> list[Finding]:
     """
-    Return the findings, with those that one edit explains listed under it.
+    Return the findings, with those that one edit explains listed under it, and those that are hidden by others.
 
-    number: of the run, in the order of program/execution/runs.py. less_regular: the rows of contours that an edit makes
-    more regular; those to which no rule objects are findings, too.
+    number: of the run, in the order of program/execution/runs.py. less_regular: where an edit makes a contour more
+    regular to which no rule objects; that is a finding, too.
     """
+    source = engine.trace.text.source
+    if REPORTS not in engine.rules or source.parts or source.channel or len(engine.trace) > _MOST_ROWS:
+        return findings
+    findings, edits = _explained(engine, findings, number, less_regular)
+    try:
+        return with_hidden(
+            engine, findings, number, edits, lambda trial: _explained(trial, trial.findings(), number, less_regular)[0]
+        )
+    except TooHardError:
+        return findings
+
+
+def _explained(
+    engine: Engine, findings: list[Finding], number: int, less_regular: LessRegular
+) -> tuple[list[Finding], list[Replace]]:
+    """The findings with those that one edit explains listed under it; the edits of paths that leave others."""
     trace = engine.trace
-    source = trace.text.source
-    if REPORTS not in engine.rules or source.parts or source.channel or len(trace) > _MOST_ROWS:
-        return list(findings)
     symptoms = [finding for finding in findings if _is_symptom(engine, finding)]
+    edits: list[Replace] = []
     if symptoms:
         search = _Search(engine, number)
         try:
             for explanation in search.explanations(symptoms):
                 findings = _under(engine, findings, explanation)
+                edits += [] if explanation.is_whole else explanation.edits
         except TooHardError:
             pass  # what was found before stands
     lines = {line for finding in findings for line in (finding.line, *(other.line for other in finding.follows))}
     unexplained = []
-    for rows, correction in less_regular:
+    for rows, correction in less_regular(engine):
         if lines.isdisjoint(trace.blocks.line[rows[0] : rows[-1] + 1].tolist()):
             unexplained.append(_new(engine, correction))
             lines.add(unexplained[-1].line)
-    return [*findings, *unexplained]
+    return [*findings, *unexplained], edits
 
 
 def _is_symptom(engine: Engine, finding: Finding) -> bool:
-    if isinstance(finding, Silenced | Undecided) or finding.section_line is None:
-        return False
-    return SEVERITIES[finding.severity] >= WARNING and engine.rules[finding.rule].is_symptom
+    return is_told(finding) and engine.rules[finding.rule].is_symptom
 
 
 def _lines(finding: Finding) -> set[int]:
     """The lines of a finding: both where it compares two."""
-    return {finding.line, int(finding.values["other_line"])} if finding.rule == COMPARES else {finding.line}
+    return {finding.line, int(finding.values["other_line"])} if finding.rule == _COMPARES else {finding.line}
 
 
 class _Search:
@@ -123,7 +139,7 @@ class _Search:
         self.symptoms = self._symptoms(engine)
 
     def explanations(self, findings: Sequence[Finding]) -> Iterator[_Explained]:
-        """One explanation at most for each path with a symptom."""
+        """One explanation at most for each path with a symptom, or two of two mistakes."""
         trace = self.trace
         lines = set[int]().union(*map(_lines, findings))
         rows = np.flatnonzero(np.isin(trace.blocks.line, [*lines]) & (trace.mode.section >= 0))
@@ -137,16 +153,15 @@ class _Search:
             own = {(finding.rule, finding.line) for finding in findings if _lines(finding) & own_lines}
             if not own <= known:
                 others = (other for other in reach if other is not own_lines and other & lines)
-                found = self._explained(loop, own_lines, set[int]().union(*others) - own_lines)
-                if found is not None:
+                for found in self._explained(loop, own_lines, set[int]().union(*others) - own_lines):
                     known |= found.gone
                     self.mended += found.edits
                     self.symptoms = found.left
                     yield found
 
-    def _explained(self, loop: WrittenLoop, own: set[int], others: set[int]) -> _Explained | None:
+    def _explained(self, loop: WrittenLoop, own: set[int], others: set[int]) -> list[_Explained]:
         """
-        The likeliest edit that removes symptoms and brings none; None for none, or for too many alike.
+        The likeliest edit that removes symptoms and brings none, or two that do so together; none for too many alike.
 
         One that removes all symptoms of the path comes before one that leaves some. own: the lines of the path. others:
         those of other paths with a symptom, where another one may come, as by a comparison of passes.
@@ -171,14 +186,44 @@ class _Search:
             lines = {line for rule, line in self.symptoms if line in own and rule not in _OF_RATES}
             rows = np.flatnonzero(np.isin(self.trace.blocks.line, [*lines]))
             whole = self._by_codes(ramp_edits(self.trace, loop.row[1:], rows), own, others, _RULES_OF_CODE)
+        if not whole and (pair := self._pair(loop, own, others)):
+            return pair
         best = whole or partly
         best = [found for found in best if best[0].likely.gain - found.likely.gain <= _AS_LIKELY]
         if not best:
-            return None
+            return []
+        best[0] = best[0]._replace(is_whole=bool(whole))
         if len(best) > _NAMED:
             is_one = bool(whole) and all(found.row == best[0].row for found in best)
-            return best[0]._replace(is_named=False, edits=[], left=self.symptoms) if is_one else None
-        return best[0]._replace(other=best[1]) if best[1:] else best[0]
+            return [best[0]._replace(is_named=False, edits=[], left=self.symptoms)] if is_one else []
+        return [best[0]._replace(other=best[1]) if best[1:] else best[0]]
+
+    def _pair(self, loop: WrittenLoop, own: set[int], others: set[int]) -> list[_Explained]:
+        """
+        Two edits that remove all symptoms of a path together; of two pairs that are as likely, the edit of both.
+
+        What is found with the first of them stands there because of the second.
+        """
+        whole: list[tuple[float, dict[Edit, tuple[Likely, list[Replace]]]]] = []
+        for pair in likely_pairs(self.trace, loop, _PAIRS):
+            gain = sum(likely.gain for likely in pair)
+            if whole and whole[0][0] - gain > _AS_LIKELY:
+                break
+            edits = [self._edits(loop, likely) for likely in pair]
+            found = self._tried(pair[0], 0, [*chain(*edits)], others) if all(edits) else None
+            if found is not None and own.isdisjoint(line for _, line in found.left):
+                whole.append((gain, {one.edit: (one, edit) for one, edit in zip(pair, edits, strict=True)}))
+        sure = [edit for edit in (whole[0][1] if whole else ()) if all(edit in pair for _, pair in whole)]
+        explained: list[_Explained] = []
+        before = self.symptoms
+        for edit in sure:
+            likely, replaced = whole[0][1][edit]
+            left = self._left_by([*chain(*(other.edits for other in explained)), *replaced])
+            left = before if left is None else left
+            row = int(loop.row[edit.corner])
+            explained.append(_Explained(likely, row, replaced, before - left, left, is_whole=True, is_of_two=True))
+            before = left
+        return explained
 
     def _by_codes(
         self, edits: Iterable[list[CodeEdit]], own: set[int], others: set[int], least: int
@@ -230,15 +275,10 @@ class _Search:
         """The symptoms of the program with these edits; None where it cannot be read as before."""
         source, engine = self.trace.text.source, self.engine
         edits = [*self.mended, *edits]
-        data = applied(source, edits)
-        if data is None:
+        trial = edited(engine, self.number, edits, self.rules)
+        if trial is None:
             return None
-        states = runs(read_source(data, source.path, source.encoding), self.trace.machine, engine.tables["job"])
-        # Without its last sign of block skip a program runs once.
-        tables = Tables(states[min(self.number, len(states) - 1)][1], self.trace.machine, engine.tables["job"])
-        tables.give("other_machine", OtherMachine(tables))
-        trial = Engine(tables, engine.severities, self.rules)
-        origin = origins(source, tables["trace"].text.source, edits)
+        origin = origins(source, trial.trace.text.source, edits)
         return frozenset((rule, int(origin[number - 1])) for rule, number in self._symptoms(trial))
 
     def _symptoms(self, engine: Engine) -> frozenset[_Symptom]:
@@ -257,7 +297,7 @@ class _Search:
 def _under(engine: Engine, findings: Sequence[Finding], explanation: _Explained) -> list[Finding]:
     """The findings with those that are explained under the edit: under the one at its line, else under a new one."""
     gone = [finding for finding in findings if (finding.rule, finding.line) in explanation.gone]
-    if not gone:
+    if not gone and not explanation.is_of_two:
         return list(findings)
     line = int(engine.trace.blocks.line[explanation.row])
     there = [finding for finding in gone if finding.line == line and _may_lead(finding, explanation)]

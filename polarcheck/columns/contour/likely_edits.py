@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from polarcheck.columns.contour.correction import Correction
-from polarcheck.columns.contour.loop_edits import Edit, edits_of, outlines_of
+from polarcheck.columns.contour.loop_edits import Edit, edits_of, outlines_of, with_edit
 from polarcheck.columns.contour.written_loop import WrittenLoop
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry.regularity.coincidences import Chances, Outlines, chances_of
@@ -24,6 +24,8 @@ _LEAST_WITNESS, _IF_SHORT, _SHORT = 1.0, 2.0, 4
 _OF_LOST_CORNER = 2.0
 #: How much less likely an edit of the block before the path is, since it leads to it [coordinates].
 _OF_LEAD = 2.0
+#: Edits that are looked at for two mistakes, and second edits of each; kinds of edits that are none of two.
+_FIRST_EDITS, _SECOND_EDITS, _OF_BLOCKS = 8, 2, ("twice", "order")
 #: Points of all edits of a path together, above which none is searched.
 _MOST_POINTS = 400_000
 
@@ -51,11 +53,13 @@ def correction_by(likely: Likely, row: int) -> Correction:
     return Correction(row, word, edit.text, edit.why, edit.remedy, likely.becomes)
 
 
-def likely_edits(trace: Trace, loop: WrittenLoop, most: int, least_gain: float = _LEAST_GAIN) -> list[Likely]:
+def likely_edits(
+    trace: Trace, loop: WrittenLoop, most: int, least_gain: float = _LEAST_GAIN, *, is_one_of_two: bool = False
+) -> list[Likely]:
     """
     The edits that leave least to chance, the likeliest first, each path once; none where none is clearly better.
 
-    least_gain: how many coordinates fewer are as they are by chance.
+    least_gain: how many coordinates fewer are as they are by chance. is_one_of_two: another edit is made beside it.
     """
     edits = edits_of(trace, loop)
     if (len(edits) + 1) * len(loop.row) > _MOST_POINTS:
@@ -82,7 +86,7 @@ def likely_edits(trace: Trace, loop: WrittenLoop, most: int, least_gain: float =
             and all(_differs(outlines, number, other, loop.tolerance) for other in found)
         ):
             found.append(number)
-    if found and _leaves_corner(chances, outlines, found[0]):
+    if found and not is_one_of_two and _leaves_corner(chances, outlines, found[0]):
         return []
     closes, smooths = ((part == 0) & (part[0] > 0) for part in (chances.is_open, chances.corners_at_arcs))
     return [
@@ -96,6 +100,22 @@ def likely_edits(trace: Trace, loop: WrittenLoop, most: int, least_gain: float =
         )
         for number in found
     ]
+
+
+def likely_pairs(trace: Trace, loop: WrittenLoop, most: int) -> list[tuple[Likely, Likely]]:
+    """The pairs of edits of different words that leave least to chance, each of which does so beside the other one."""
+    found: dict[tuple[str, ...], tuple[float, Likely, Likely]] = {}
+    for first in likely_edits(trace, loop, _FIRST_EDITS, LEAST_IF_WHOLE, is_one_of_two=True):
+        if first.edit.kind in _OF_BLOCKS:
+            continue
+        for second in likely_edits(trace, with_edit(loop, first.edit), _SECOND_EDITS):
+            if second.edit.kind in _OF_BLOCKS or second.edit.corner == first.edit.corner:
+                continue
+            one, two = sorted((first, second), key=lambda likely: likely.edit.corner)
+            key = tuple(f"{likely.edit.corner} {likely.edit.text}" for likely in (one, two))
+            found.setdefault(key, (first.gain + second.gain, one, two))
+    pairs = sorted(found.values(), key=lambda pair: -pair[0])
+    return [(one, two) for _, one, two in pairs[:most]]
 
 
 def _leaves_corner(chances: Chances, outlines: Outlines, number: int) -> bool:

@@ -11,7 +11,7 @@ import numpy as np
 from polarcheck.columns.contour.written_loop import AxisWords, WrittenLoop
 from polarcheck.columns.trace import Trace
 from polarcheck.columns.words.slips import WORD, Slip, plain_number, slips_of
-from polarcheck.foundation.arrays import Floats, Points
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows
 from polarcheck.geometry.regularity.coincidences import Outlines
 
 #: Numbers of a contour; smaller ones are 0, or nobody can tell.
@@ -246,6 +246,22 @@ def _decimals(number: str) -> int:
 
 def outlines_of(loop: WrittenLoop, edits: list[Edit]) -> Outlines:
     """The path with each of these edits; the first outline is that of the path as it is written."""
+    values, steps, turns, radius, to_center = _changed(loop, edits)
+    return Outlines(loop.points(values, steps), turns, radius, to_center)
+
+
+def with_edit(loop: WrittenLoop, edit: Edit) -> WrittenLoop:
+    """The path with an edit that leaves its blocks as they are; its words are those that are written."""
+    values, steps, turns, radius, to_center = _changed(loop, [edit])
+    first, second = (
+        axis._replace(value=value[1], is_step=step[1])
+        for axis, value, step in zip(loop.axes, values, steps, strict=True)
+    )
+    return loop._replace(axes=(first, second), turns=turns[1], radius=radius[1], to_center=to_center[1])
+
+
+def _changed(loop: WrittenLoop, edits: list[Edit]) -> tuple[list[Floats], list[Mask], Rows, Floats, Points]:
+    """Numbers of both axes, whether they are steps, turns, R and centers: as they are written, and with each edit."""
     count = len(edits) + 1
     values = [np.repeat(axis.value[None], count, 0) for axis in loop.axes]
     steps = [np.repeat(axis.is_step[None], count, 0) for axis in loop.axes]
@@ -273,7 +289,7 @@ def outlines_of(loop: WrittenLoop, edits: list[Edit]) -> Outlines:
                     words[number, edit.corner : edit.corner + 2] = words[number, [edit.corner + 1, edit.corner]]
                 for parts in (turns, radius, to_center):
                     parts[number, edit.corner - 1 : edit.corner + 1] = parts[number, [edit.corner, edit.corner - 1]]
-    return Outlines(loop.points(values, steps), turns, radius, to_center)
+    return values, steps, turns, radius, to_center
 
 
 def _next_code(loop: WrittenLoop, block: int) -> int:

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     WARNING,
     "{in_air}",
     values=("z",),
+    is_symptom=True,
     once="section",
     subject="stock",
     doubts=(("metal", "section"), ("rapid", "tool call")),

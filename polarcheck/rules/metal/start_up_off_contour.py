@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     values=("plane_x", "plane_c", "x_needed", "other_line"),
     gouges=True,
     at=("X", "U"),
+    is_symptom=True,
     once="loop",
     subject="",
     doubts=(("position", "X"), ("position", "X before"), ("compensation", "loop"), ("metal", "loop")),

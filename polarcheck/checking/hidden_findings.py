@@ -1,0 +1,178 @@
+"""
+Findings that another one hides: what it says to write is written, and the program is checked again.
+
+A mistake makes doubtful what is found beside it, so that a second one is listed under it, or not found at all. What is
+found without the first mistake is no consequence of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+
+import msgspec
+import numpy as np
+
+from polarcheck.checking.edits import applied, spans
+from polarcheck.checking.engine import Engine
+from polarcheck.foundation.finding import SEVERITIES, WARNING, Finding, Silenced, Undecided
+from polarcheck.foundation.states import Side
+from polarcheck.program.execution.runs import runs
+from polarcheck.program.reading.source import read_source
+from polarcheck.rules.editing import Replace, in_place_of, is_plain, without, words_of
+from polarcheck.rules.other_machine import OtherMachine
+from polarcheck.rules.rule import Rule
+from polarcheck.rules.tables import Tables
+
+#: The rule that reports an edit which explains findings; it is no symptom.
+REPORTS = "nearly-regular-contour"
+#: Checks of a program for what is hidden in it.
+_MOST_CHECKS = 6
+
+#: The addresses of the linear axis of the polar plane.
+LINEAR = "XU"
+
+#: Gives the findings of an engine.
+Check = Callable[[Engine], list[Finding]]
+#: A rule and a line at which it fires.
+Symptom = tuple[str, int]
+
+
+def edited(engine: Engine, number: int, edits: Sequence[Replace], rules: Sequence[Rule]) -> Engine | None:
+    """The engine of a run of the program with these edits; None where they cannot be written. number: of the run."""
+    source, machine, job = engine.trace.text.source, engine.trace.machine, engine.tables["job"]
+    data = applied(source, edits)
+    if data is None:
+        return None
+    states = runs(read_source(data, source.path, source.encoding), machine, job)
+    # Without its last sign of block skip a program runs once.
+    tables = Tables(states[min(number, len(states) - 1)][1], machine, job)
+    tables.give("other_machine", OtherMachine(tables))
+    return Engine(tables, engine.severities, rules)
+
+
+def with_hidden(
+    engine: Engine, findings: list[Finding], number: int, edits: Sequence[Replace], check: Check
+) -> list[Finding]:
+    """
+    Return the findings, with those of the same sections that are found without what hides them.
+
+    number: of the run. edits: they explain findings, and leave others. check: gives the findings of a program.
+    """
+    hiding = [finding for finding in findings if is_told(finding) and engine.rules[finding.rule].doubts]
+    if engine.allows is not None or not (hiding or edits):
+        return findings
+    trials = _Trials(engine, number, check)
+    source = engine.trace.text.source
+    lines = {source.line_of(start) for start, _, _ in edits}
+    sections = {finding.section_line for finding in findings if finding.line in lines}
+    edits, left = [*edits], trials.findings(edits) if edits else findings
+    for finding in hiding:
+        if left is None:
+            return findings
+        tried, before = [], symptoms(left)
+        for repair in _repairs(engine, finding):
+            others = trials.findings([*edits, *repair])
+            if others is not None and _is_gone(finding, before, symptoms(others)):
+                repaired = {source.line_of(start) for start, _, _ in repair}
+                tried.append((sum(other.line in repaired for other in others), len(others), repair, others))
+        if tried:
+            *_, repair, left = min(tried, key=lambda trial: trial[:2])
+            edits += repair
+            sections.add(finding.section_line)
+    lines = {source.line_of(start) for start, _, _ in edits}
+    known = {(finding.rule, finding.line) for finding in findings}
+    hidden = [
+        msgspec.structs.replace(finding, fix=None)
+        for finding in left or ()
+        if is_told(finding)
+        and finding.section_line in sections
+        and finding.line not in lines
+        and (finding.rule, finding.line) not in known
+    ]
+    return [*_without(findings, symptoms(hidden)), *hidden]
+
+
+def is_told(finding: Finding) -> bool:
+    """A warning or an error in a polar section."""
+    if isinstance(finding, Silenced | Undecided) or finding.section_line is None:
+        return False
+    return SEVERITIES[finding.severity] >= WARNING
+
+
+def symptoms(findings: Sequence[Finding]) -> set[Symptom]:
+    """Where rules fire, in findings and those that follow from them."""
+    return {(one.rule, one.line) for finding in findings for one in (finding, *finding.follows)}
+
+
+def _is_gone(finding: Finding, before: set[Symptom], after: set[Symptom]) -> bool:
+    """A finding is gone, its rule fires nowhere else instead, and less is found; with a fix, no more."""
+    counts = [sum(rule != REPORTS for rule, _ in found) for found in (before, after)]
+    is_less = counts[1] < counts[0] + (finding.fix is not None)
+    return (
+        is_less
+        and (finding.rule, finding.line) not in after
+        and all(rule != finding.rule for rule, _ in after - before)
+    )
+
+
+class _Trials:
+    def __init__(self, engine: Engine, number: int, check: Check) -> None:
+        self.engine, self.number, self.check = engine, number, check
+        self.left = _MOST_CHECKS
+
+    def findings(self, edits: Sequence[Replace]) -> list[Finding] | None:
+        """The findings of the program with these edits; None where its lines are others then, or too many are tried."""
+        self.left -= 1
+        if self.left < 0 or any("\n" in text for _, _, text in edits):
+            return None
+        trial = edited(self.engine, self.number, edits, [*self.engine.rules.values()])
+        lines = self.engine.trace.text.source.line_starts
+        if trial is None or len(trial.trace.text.source.line_starts) != len(lines):
+            return None
+        return self.check(trial)
+
+
+def _repairs(engine: Engine, finding: Finding) -> Iterator[list[Replace]]:
+    """What may be written for a finding: its fix, or another word in the place of that at fault."""
+    trace = engine.trace
+    run, machine, source = trace.run, trace.machine, trace.text.source
+    if finding.fix is not None:
+        yield spans(source, finding.fix)
+        return
+    rows = np.flatnonzero((trace.blocks.line == finding.line) & (trace.mode.section >= 0))
+    if not len(rows) or not is_plain(run, int(rows[0])):
+        return
+    row = int(rows[0])
+    start = int(source.line_starts[finding.line - 1])
+    first, last = (start + column - 1 for column in (finding.column, finding.end_column))
+    words = words_of(run, row)
+    at = [word for word in words if first <= int(run.words.start[word]) < last]
+    doubts = {what for what, _ in engine.rules[finding.rule].doubts}
+    if "rapid" in doubts:
+        codes = np.flatnonzero(run.words.start == trace.modal.motion_word[row])
+        yield from ([in_place_of(run, int(word), next(iter(machine.codes("line"))))] for word in codes[:1])
+    sides = trace.blocks.code_indices(*machine.codes("compensation_left"), *machine.codes("compensation_right"))
+    for word in at if "compensation" in doubts else ():
+        if word in sides:
+            other = "compensation_left" if trace.compensation.side[row] == Side.RIGHT else "compensation_right"
+            off = trace.blocks.code_indices(*machine.codes("compensation_off"))
+            yield [in_place_of(run, word, next(iter(machine.codes(other))))]
+            yield from (without(run, int(run.row[code]), [int(code)]) for code in off[run.row[off] > row][:1])
+    if "position" in doubts and len(at) == 1:
+        address = run.words.address
+        alike = [word for word in words if address[word] == address[at[0]]]
+        letter = trace.axes.virtual_addresses(row)[0]
+        if len(alike) > 1:
+            yield from (without(run, row, [word]) for word in alike)
+        elif chr(address[at[0]]) not in {letter, *trace.axes.virtual_addresses(row), *LINEAR}:
+            yield [in_place_of(run, at[0], letter + run.written(at[0]).strip()[1:])]
+
+
+def _without(findings: list[Finding], symptoms: set[Symptom]) -> list[Finding]:
+    """The findings without those that follow from them and are given."""
+    kept = []
+    for finding in findings:
+        follows = [other for other in finding.follows if (other.rule, other.line) not in symptoms]
+        is_same = len(follows) == len(finding.follows)
+        kept.append(finding if is_same else msgspec.structs.replace(finding, follows=follows))
+    return kept
