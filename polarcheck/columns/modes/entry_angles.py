@@ -9,6 +9,7 @@ from polarcheck.columns.modes.spindles import Spindles
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Columns, Floats, Mask, Points, Rows, cached_property
 from polarcheck.geometry.tolerances import ROUNDING
+from polarcheck.program.machines.code_lists import FRAME_LISTS
 
 #: Angles that are nearer than this are one [deg]: the last point of a section is rounded.
 _SAME_ANGLE = 0.2
@@ -16,9 +17,8 @@ _SAME_ANGLE = 0.2
 _SAME = 0.02
 #: A section of more moves is compared with nothing.
 _MOST_MOVES = 2000
-#: The lists of codes that change the zero, and those that change a frame.
+#: The lists of codes that change the zero.
 _ZEROS = ("work_offset", "work_offset_extended", "data_input", "coordinate_setting")
-_FRAMES = ("frame_shift", "frame_shift_added", "frame_rotation", "frame_rotation_added", "frame_not_simulated")
 #: A contour without compensation begins within so many moves.
 _MOST_LEADS = 20
 
@@ -83,7 +83,7 @@ class EntryAngles(Columns, frozen=True):
         if len(sections) < 2 or not trace.machine.polar.plane_is_fixed:
             return found
         enter, last = sections.enter, np.minimum(sections.last, len(trace) - 1)
-        turns_zero = trace.blocks.listed(*_ZEROS, *_FRAMES) | trace.run.unknown | trace.blocks.starts
+        turns_zero = trace.blocks.listed(*_ZEROS, *FRAME_LISTS) | trace.run.unknown | trace.blocks.starts
         may_turn, positioned = np.cumsum(turns_zero), np.cumsum(self._names_c)
         turn = np.mod(np.diff(trace.path.c_angle[enter]) + 180, 360) - 180
         tool = trace.tools.tool[enter]

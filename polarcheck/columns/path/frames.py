@@ -105,19 +105,19 @@ def _or_nothing(value: Floats, written: Mask) -> Floats:
 
 def in_force(words: FrameWords) -> Frames:
     """The frames that the words of all rows make."""
-    resets = words.ends | words.unknown
-    values = np.where(words.unknown, np.nan, 0.0)
-    angle = _summed(words.angle, words, resets, values)
+    angle = _summed(words.angle, words)
     turned = np.exp(1j * np.radians(np.where(words.adds, angle - words.angle, 0.0))) * words.shift
     shift = np.empty(len(angle), np.complex128)
-    shift.real, shift.imag = (_summed(part, words, resets, values) for part in (turned.real, turned.imag))
-    return Frames(angle, shift, _summed(words.z, words, resets, values))
+    shift.real, shift.imag = (_summed(part, words) for part in (turned.real, turned.imag))
+    return Frames(angle, shift, _summed(words.z, words))
 
 
-def _summed(value: Floats, words: FrameWords, resets: Mask, values: Floats) -> Floats:
-    """The sum of a new frame and of the frames added to it."""
-    set_by = np.where(words.begins & ~words.unknown, value, np.nan)
-    return positions(set_by, np.where(words.adds & ~words.unknown, value, 0.0), resets, values)
+def _summed(value: Floats, words: FrameWords) -> Floats:
+    """The sum of a new frame and of the frames added to it; NaN from a frame on that begins with an unknown value."""
+    is_lost = words.unknown | (words.begins & np.isnan(value))
+    set_by = np.where(words.begins & ~is_lost, value, np.nan)
+    steps = np.where(words.adds & ~is_lost, value, 0.0)
+    return positions(set_by, steps, words.ends | is_lost, np.where(is_lost, np.nan, 0.0))
 
 
 def in_frame(

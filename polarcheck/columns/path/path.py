@@ -329,7 +329,10 @@ class ProgrammedPath(Columns, frozen=True):
     @property
     def _z_words(self) -> tuple[Floats, Floats]:
         absolute, steps = self._programmed("Z", "W", 1.0, np.ones(len(self.run), bool))
-        return absolute if self.frames is None else absolute + self.frames.z, steps
+        if self.frames is None:
+            return absolute, steps
+        shifted = absolute + self.frames.z
+        return shifted, np.where(np.isnan(shifted) & ~np.isnan(absolute), np.nan, steps)
 
     @cached_property
     def written_to_center(self) -> tuple[Floats, Floats]:

@@ -13,7 +13,8 @@ from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Columns, Mask, Rows, cached_property, is_among
 from polarcheck.program.execution.arithmetic import Unknown
 from polarcheck.program.execution.run import NO_VARIABLE
-from polarcheck.program.machines.axis_table import INCREMENTS, NO_AXIS
+from polarcheck.program.machines.axis_table import INCREMENTS, NO_AXIS, OF_SPINDLE
+from polarcheck.program.machines.code_lists import FRAME_LISTS
 
 #: What these say changes no metal that a check follows: speeds, dwells and repeats, numbers of blocks and programs.
 _HARMLESS = tuple("SPNO/")
@@ -115,9 +116,12 @@ class UnknownWords(Columns, frozen=True):
         if not in_section.any():
             # An unknown G may begin the contour that a G13.1 ends.
             return np.asarray(is_among(address, self._numbers("G")) & trace.mode.comes_before_open_end[row])
-        is_position = trace.modal.uses_axes[row] & ~is_among(address, self._numbers(*_HARMLESS))
+        is_position = (trace.modal.uses_axes | trace.blocks.listed(*FRAME_LISTS))[row]
+        is_position &= ~is_among(address, self._numbers(*_HARMLESS))
         # An unknown code may be any code, and leave anything in force.
-        is_code = is_among(address, self._numbers("G", "M"))
+        letter = trace.text.source.code[trace.run.words.start[self.index]]
+        is_code = is_among(address, self._numbers("G", "M", "@"))
+        is_code |= (address == OF_SPINDLE) & is_among(letter, np.frombuffer(b"Mm", np.uint8))
         lasts = is_code | self._sets_origin[self.index] | self._sets_tool[row]
         matters = (in_section[row] & is_position) | (lasts & (in_section | trace.mode.comes_before_section)[row])
         lasting = [np.zeros(0, np.int64)]
@@ -130,6 +134,9 @@ class UnknownWords(Columns, frozen=True):
         lasting.append(self._lasting(("T",), trace.tools.calls_offset, in_section))
         lasting.append(self._lasting(("D",), trace.tools.calls_edge, in_section))
         lasting.append(self._lasting(("F",), positions, trace.path.moves_at_feed))
+        for word, kind in trace.machine.arcs.made_corners.items():
+            if kind == "modal-radius":
+                lasting.append(self._lasting((word,), ~trace.blocks.nowhere, in_section))
         return np.asarray(matters | np.isin(self.index, np.concatenate(lasting)))
 
     @cached_property

@@ -178,10 +178,12 @@ class _Reader(SpokenBlock):
 
     def master_spindle(self, first: Token) -> None:
         """SETMS(3): the spindle that M3, M4, M5 and S are for from here on; without a number, spindle 1."""
-        given = self.arguments()
-        if given == "" or given.isdigit():
-            number = float(given or 1)
-            self.words.append(Word("@", constant(number, first.start, self.last_end), None, first.start, self.last_end))
+        value: Expression | None = constant(1.0, first.start, first.end)
+        if self.take_sign("(") and not self.take_sign(")"):
+            value = self.expression()
+            self.take_sign(")")
+        if value is not None:
+            self.words.append(Word("@", value, None, first.start, self.last_end))
 
     def native(self, code: str, first: Token) -> None:
         """A word that stands for a code; what stands in its parentheses may choose another set of data."""
