@@ -249,6 +249,81 @@ def test_what_a_control_cannot_read_is_not_compared(control: str, name: str, tmp
     assert (result.exit_code, "characters that the control cannot read" in result.stdout) == (2, True)
 
 
+#: What shifts, turns or rounds the path by a value that is not known, or starts a spindle by one; and where it stands.
+UNKNOWN_STATES = {
+    "TRANS Z=R500": "G1 X28",
+    "ATRANS Z=R500": "G1 X28",
+    "TRANS X=R500": "G42",
+    "TRANS X5 Y=R500": "G42",
+    "ROT RPL=R500": "G42",
+    "RNDM=R500": "TRANSMIT",
+    "SETMS(R500)": "G0 X60",
+    "M2=R500": "G0 X60",
+}
+
+
+@looped("words", UNKNOWN_STATES)
+def test_a_state_that_is_not_known_is_known_to_no_command(words: str, tmp_path: Path) -> None:
+    control, place = "siemens-transmit", UNKNOWN_STATES[words]
+    text = program(control, (place, f"{words}/{place}"))
+    report = report_of(text, control, CUTTER)
+    assert (report.verdict, [finding.rule for finding in report.findings]) == ("unverified", [])
+    if "Z=" in words:
+        assert "Z not known" in in_one_line(tables_of(text, control, CUTTER))
+    for old in (text.replace("500", "501"), program(control)):
+        assert compared(tmp_path, control, old, text).exit_code > 0
+    assert certified(tmp_path, control, program(control), text, verdict="unverified").exit_code == 1
+
+
+#: What changes no move that is followed, and is no sound program any more; and the rule that says so.
+ERRORS = {
+    "fanuc-30i": {
+        "/G42 X36.": ("/G18/G42 X36.", "plane-selected-in-polar"),
+        "/Z-4.": ("/M98 P9/Z-4.", "subprogram-missing"),
+        "/G12.1": ("/G12.1 F1000", "polar-switch-not-alone"),
+        "/M5": ("/#1=LN[0]/M5", "arithmetic-error"),
+        "/M30": ("/GOTO7/M30", "jump-target-missing"),
+    },
+    "haas-lathe": {
+        "/M155": ("/M98 P9/M155", "subprogram-missing"),
+        "/M135": ("/#1=SQRT[-1]/M135", "arithmetic-error"),
+    },
+    "siemens-transmit": {
+        "/M30": ("/L9/M30", "subprogram-missing"),
+    },
+    "okuma-osp": {"/M12": ("/CALL O9/M12", "subprogram-missing")},
+}
+
+
+@looped(("control", "words"), [(control, words) for control, changes in ERRORS.items() for words in changes])
+def test_what_a_check_finds_in_one_of_two_programs_is_not_the_same_metal(
+    control: str, words: str, tmp_path: Path
+) -> None:
+    new, rule = ERRORS[control][words]
+    sound, text = program(control), program(control, (words, new))
+    assert rule in [finding.rule for finding in report_of(text, control, CUTTER).findings]
+    result = compared(tmp_path, control, sound, text)
+    assert (result.exit_code, rule in result.stdout) == (2, True), result.stdout
+
+
+@looped(
+    ("old", "new", "code"),
+    [
+        ("G64 ADIS=0.1", "G64 ADIS=5", 2),
+        ("G64 ADIS=R1", "G64 ADIS=R2", 2),
+        ("SOFT", "BRISK", 2),
+        ("LIMS=500", "", 2),
+        ("SOFT ; BRISK", "SOFT", 0),
+        ('MSG("SOFT")', "STOPRE", 0),
+    ],
+)
+def test_what_changes_speeds_and_corners_unseen_is_not_the_same_metal(
+    old: str, new: str, code: int, tmp_path: Path
+) -> None:
+    texts = [program("siemens-transmit", ("/G42", f"/{words}/G42" if words else "/G42")) for words in (old, new)]
+    assert compared(tmp_path, "siemens-transmit", *texts).exit_code == code
+
+
 #: Moves of Z alone, and others in rapid traverse; and those that are the same.
 OF_Z = {
     "fanuc-30i": ("/Z2. F1000", "/Z-7. F1000", "/Z2. F1500", "/Z0. F1000/Z2."),

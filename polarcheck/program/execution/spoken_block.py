@@ -126,11 +126,12 @@ class SpokenBlock(Tokens):
     # ---- what tokens say ----
 
     def effect(self, name: str) -> str | None:
-        """Return the effect of a statement on the tool path, by macro.statements; None if it is not listed."""
+        """Return the effect of a statement on the path of the tool, by macro.statements; None if it is not listed."""
         effects = self.names.effects
         if name not in effects:
             listed: Mapping[str, str] = self.machine.macro.statements
-            effects[name] = listed[name] if name in listed else _by_pattern(_patterns(tuple(listed.items())), name)
+            effect = listed[name] if name in listed else _by_pattern(_patterns(tuple(listed.items())), name)
+            effects[name] = "none" if effect == "speeds" else effect
         return effects[name]
 
     def arguments(self) -> str:

@@ -70,8 +70,8 @@ class Macro(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     largest_number: a result above it overflows
     given: variable -> its value, as the job or the machine knows it
 
-    Of a statement, none: it moves nothing and changes no path. path: the path or the feed changes, and the positions
-    stay. moves: nobody knows where the axes stand after it. words: the same, and the words behind it are its own. Then
+    Of a statement, none: it moves nothing and changes no path. speeds: the same, but axes and spindles may run
+    otherwise, which a comparison says. path: the path or the feed changes, and the positions stay. moves: nobody knows where the axes stand after it. words: the same, and the words behind it are its own. Then
     there are cycle, which is as moves, but outside the mode the positions alone are open until they are programmed
     again, and calls, which is the same of what it names, and nothing without a name.
     """
@@ -81,7 +81,7 @@ class Macro(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     master_spindle_word: Plain = ""
     named_words: dict[Plain, AddressOrNone] = {}
     other_language: LanguageCode = ""
-    statements: dict[Plain, Literal["none", "path", "words", "moves", "cycle", "calls"]] = {}
+    statements: dict[Plain, Literal["none", "speeds", "path", "words", "moves", "cycle", "calls"]] = {}
     local_variables: Ranges
     common_variables: Ranges
     retained_variables: Ranges

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Mapping, Sequence
 
 import numpy as np
 
+from polarcheck.checking.check import check_runs
 from polarcheck.checking.not_evaluated import bounds_not_reported, unexecuted, unknown_value
 from polarcheck.columns.trace import Trace
 from polarcheck.columns.words.unknown_words import UnknownItem
+from polarcheck.foundation.finding import SEVERITIES, Finding, Severity
+from polarcheck.foundation.patterns import lazy_pattern
 from polarcheck.rewrite.compare.comparison_report import NotCompared
 from polarcheck.rewrite.compare.differences import Part
 from polarcheck.rewrite.compare.order_differences import order_differences
@@ -18,8 +21,16 @@ from polarcheck.rewrite.compare.order_meanings import shift_steps
 from polarcheck.rewrite.compare.orders import not_comparable
 from polarcheck.rewrite.compare.same_words import spans_of
 from polarcheck.rewrite.compare.terms import Terms
+from polarcheck.rewrite.writing.new_blocks import without_comments
+from polarcheck.rules.rule import load_all
 from polarcheck.rules.tables import Tables
 
+#: A run of a file as checking.check.read gives it: the state of block skip, and its tables.
+Run = tuple[str, Tables]
+#: Rules of warnings with which a control runs what is in no file.
+_RUNS_MORE = ("subprogram-missing",)
+#: A statement by its name, with what is handed to it: `ADIS=0.5`, `ACC[X]=80`, `SOFT`.
+_STATEMENT = lazy_pattern(r"(?<![\w$])([A-Z]\w+)(?:\[[^\]]*\])?(?:\s*=\s*[^\s;]+|\([^)]*\))?")
 #: What stands before the value of a word; nothing before `#2001=`.
 _ADDRESS = re.compile(r"^,?[A-Z]+(?:[0-9]*=)?")
 
@@ -38,6 +49,10 @@ def incomparable(pair: tuple[Tables, Tables], terms: Terms) -> Iterator[NotCompa
         if any(count.any() for count in (written.stray_count, written.wrong_dash_count, written.letter_count)):
             reason = f"{name}: characters that the control cannot read: polarcheck check names them"
             yield NotCompared(reason, matters=not terms.is_kept)
+    statements = [_passed_over(trace) for trace in traces]
+    for name, of_side, of_rival in zip(("old", "new"), statements, statements[::-1], strict=True):
+        for text in list((of_side - of_rival) if not terms.is_kept else ())[:1]:
+            yield NotCompared(f"{name}: {text}: what it does to speeds and corners is not simulated")
     # In one program alone it is left to the lathe what F means.
     is_open = [
         bool((tables["feeds"].mode_is_unknown & trace.path.moves_at_feed).any())
@@ -49,6 +64,42 @@ def incomparable(pair: tuple[Tables, Tables], terms: Terms) -> Iterator[NotCompa
     yield from _unknown_values(pair, terms)
     if traces[0].machine != traces[1].machine:
         yield from _of_machines(traces, terms)
+
+
+def added_findings(old: Sequence[Run], new: Sequence[Run]) -> Iterator[NotCompared]:
+    """
+    Yield the rules of which a check of one program has more findings than that of the other, errors and warnings.
+
+    With an error a control stops or runs otherwise than written, so that the same moves are not yet the same metal.
+    """
+    findings = [findings_of(runs, runs[0][1]["job"].severities, Severity.WARNING) for runs in (old, new)]
+    counts = [Counter(finding.rule for finding in of_side) for of_side in findings]
+    for name, of_side, more in zip(
+        ("old", "new"), findings, (counts[0] - counts[1], counts[1] - counts[0]), strict=True
+    ):
+        for rule in more:
+            first = next(finding for finding in of_side if finding.rule == rule)
+            is_error = SEVERITIES[first.severity] >= Severity.ERROR or rule in _RUNS_MORE
+            reason = f"{name}: a check finds {rule} in line {first.line}, and not in the other: {first.message}"
+            yield NotCompared(reason, matters=is_error)
+
+
+def findings_of(
+    runs: Sequence[Run], severities: Mapping[str, str], lowest: Severity, *, inline: bool = True
+) -> list[Finding]:
+    """Return the findings of a check from a severity up, also those that follow from another one."""
+    report = check_runs(runs, list(load_all().values()), severities, inline)
+    findings = [flattened for finding in report.findings for flattened in (finding, *finding.follows)]
+    return [finding for finding in findings if SEVERITIES[finding.severity] >= lowest]
+
+
+def _passed_over(trace: Trace) -> Counter[str]:
+    """Return the statements that a check passes over, although they change speeds and the way round corners."""
+    text, listed = trace.text, trace.machine.macro.statements.items()
+    names = {name.partition("[")[0].rstrip("=") for name, effect in listed if effect == "speeds"}
+    blocks = np.flatnonzero(text.blocks.is_macro).tolist() if names else []
+    matches = (match for block in blocks for match in _STATEMENT.finditer(without_comments(text, block).upper()))
+    return Counter("".join(match[0].split()) for match in matches if match[1] in names)
 
 
 def _of_machines(traces: tuple[Trace, Trace], terms: Terms) -> Iterator[NotCompared]:

@@ -31,7 +31,7 @@ from polarcheck.rewrite.compare.comparison_report import (
 )
 from polarcheck.rewrite.compare.differences import Part, depth_of
 from polarcheck.rewrite.compare.entry_state import entry_differences
-from polarcheck.rewrite.compare.not_compared import incomparable, not_known_in_both, why_not
+from polarcheck.rewrite.compare.not_compared import Run, added_findings, incomparable, not_known_in_both, why_not
 from polarcheck.rewrite.compare.orders import steps
 from polarcheck.rewrite.compare.pairing import paired
 from polarcheck.rewrite.compare.parts_compared import Measured, measured, outside_compared
@@ -41,8 +41,6 @@ from polarcheck.rules.quantity import rounded
 from polarcheck.rules.tables import Tables
 
 Item = TypeVar("Item")
-#: A run of a file as checking.check.read gives it: the state of block skip, and its tables.
-Run = tuple[str, Tables]
 
 
 class Revision(NamedTuple):
@@ -82,11 +80,13 @@ def compared(old: Revision, new: Revision, terms: Terms) -> Comparison:
         for pair, run in zip(pairs, runs, strict=True)
         for reason in (*incomparable(pair, terms), *run.not_compared)
     ]
-    reasons.sort(key=lambda reason: not reason.matters)
-    missing = list({reason.reason: reason for reason in reversed(reasons)}.values())[::-1]
     is_same_setup = old.trace.machine == new.trace.machine and old.trace.job == new.trace.job
     same_words = is_same_setup and has_same_words(old.trace, new.trace)
     differs = bool(between) or any(section.change not in ("same", "not compared") for section in sections)
+    if is_same_setup and not (same_words or differs or terms.is_kept):
+        reasons += added_findings(old.runs, new.runs)
+    reasons.sort(key=lambda reason: not reason.matters)
+    missing = list({reason.reason: reason for reason in reversed(reasons)}.values())[::-1]
     verdict = SAME_METAL
     if any(run.is_broken_off for run in runs):
         verdict = NOT_COMPARED  # what was not reached is not missing

@@ -9,11 +9,11 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from polarcheck.checking.check import check_runs
 from polarcheck.checking.settings import Settings
 from polarcheck.foundation.finding import SEVERITIES, Finding, Severity
 from polarcheck.geometry.comparison.path_deviation import path_deviation
 from polarcheck.rewrite.compare.comparison_report import Comparison
+from polarcheck.rewrite.compare.not_compared import findings_of
 from polarcheck.rewrite.compare.revision_comparison import Revision, compared, default_tolerance
 from polarcheck.rewrite.compare.terms import TIME, TIME_SHARE, Terms, lines_before
 from polarcheck.rewrite.writing.order_refusals import changed_meanings, changed_orders, line_of, refusal_of
@@ -237,7 +237,10 @@ def _added_findings(
 ) -> Iterator[tuple[Rule, Severity, Refusal]]:
     """Findings of a check from a severity up that the original does not have, with their rules and severities."""
     rules = load_all()
-    before, after = (_findings_of(program, lowest) for program in (original, new))
+    before, after = (
+        findings_of([("", program.tables)], program.settings.severities, lowest, inline=program.settings.inline)
+        for program in (original, new)
+    )
     counts_before = Counter(finding.rule for finding in before)
     lines = {(finding.rule, finding.line) for finding in before}
     of_rule: dict[str, list[Finding]] = {}
@@ -248,10 +251,3 @@ def _added_findings(
         for finding in added[: max(len(findings) - counts_before[rule], 0)]:
             text = f"{finding.rule} in line {finding.line} of the result: {finding.message}"
             yield rules[rule], SEVERITIES[finding.severity], Refusal(line_of(origin, finding.line), text)
-
-
-def _findings_of(program: Original, lowest: Severity) -> list[Finding]:
-    settings = program.settings
-    report = check_runs([("", program.tables)], list(load_all().values()), settings.severities, settings.inline)
-    findings = [flattened for finding in report.findings for flattened in (finding, *finding.follows)]
-    return [finding for finding in findings if SEVERITIES[finding.severity] >= lowest]
