@@ -27,6 +27,7 @@ from polarcheck.foundation.states import Motion
 from polarcheck.geometry.shapes.shape import POLYGONS
 
 if TYPE_CHECKING:
+    from polarcheck.geometry.segments import Curves
     from polarcheck.geometry.shapes.shape import Shape
 
 #: The cut may differ from the depth of a comment by so much: depths of drawings are rounded [mm].
@@ -108,6 +109,20 @@ class PartComments(Columns, frozen=True):
         for hit in self._bars():
             hits.setdefault(hit.row, hit)
         return hits
+
+    @property
+    def has_areas(self) -> bool:
+        """
+        True where walls of unknown R have the size of a comment, and none of known R has it.
+
+        No polygon is computed then, and what is made is told nevertheless.
+        """
+        overcuts = self.finished.overcuts
+        stated = [comment.sizes for comment in self.part_comments if comment.of_size]
+        return "contradictions" in vars(self) and any(
+            _has_walls_of(sizes, overcuts.walls_of_unknown_radius[0]) and not _has_walls_of(sizes, overcuts.walls[0])
+            for sizes in stated
+        )
 
     @property
     def contradicts(self) -> Mask:
@@ -237,7 +252,12 @@ class PartComments(Columns, frozen=True):
         return [shape._replace(row=int(level.walls.row[0])) for shape in of_level]
 
     def _sizes(self, comment: PartComment) -> Iterator[Contradiction]:
-        if not comment.of_size or any(map(self._has_walls_of, comment.sizes)):
+        overcuts = self.finished.overcuts
+        if (
+            not comment.of_size
+            or _has_walls_of(comment.sizes, overcuts.walls[0])
+            or _has_walls_of(comment.sizes, overcuts.walls_of_unknown_radius[0])
+        ):
             return
         from polarcheck.columns.metal.stated_sizes import fits
 
@@ -252,22 +272,6 @@ class PartComments(Columns, frozen=True):
             return  # so may one of which not all is known
         hits = [hit for size in comment.sizes for hit in self._contradictions(comment, size, of_comment)]
         yield from hits[:1] or self._beyond_diameter(comment, of_comment)
-
-    def _has_walls_of(self, size: StatedShape) -> bool:
-        """
-        A cheap test: straight walls lie at half the size from the axis, in as many directions as the shape has.
-
-        Then some shape has this size.
-        """
-        walls, _ = self.finished.overcuts.walls
-        along = walls.end - walls.start
-        is_side = ~walls.is_arc & walls.is_known & (np.abs(along) > _SHORTEST)
-        direction = along[is_side] / np.abs(along[is_side])
-        distance = np.abs((walls.start[is_side] * direction.conj()).imag)
-        at_size = np.abs(2 * distance - size.size) <= tolerance_of(size.size)
-        angle = np.rint(np.degrees(np.angle(direction[at_size] ** 2)) / 2) % 180
-        sides = {name: sides for sides, name in POLYGONS.items()}.get(size.shape, 0)
-        return bool(sides) and len(different(angle)) == (sides if sides % 2 else sides // 2)
 
     def _contradictions(
         self, comment: PartComment, size: StatedShape, of_comment: list[Shape]
@@ -359,3 +363,25 @@ class PartComments(Columns, frozen=True):
 
 def _is_depth(depth: float, value: Floats) -> Mask:
     return np.asarray(np.abs(value - depth) <= max(_DEPTH_TOLERANCE, _DEPTH_SHARE * depth))
+
+
+def _has_walls_of(sizes: Sequence[StatedShape], walls: Curves) -> bool:
+    """
+    A cheap test: straight walls lie at half of one of these sizes from the axis, in as many directions as it has.
+
+    Then some shape has this size.
+    """
+    if not sizes:
+        return False
+    along = walls.end - walls.start
+    is_side = ~walls.is_arc & walls.is_known & (np.abs(along) > _SHORTEST)
+    direction = along[is_side] / np.abs(along[is_side])
+    distance = np.abs((walls.start[is_side] * direction.conj()).imag)
+    sides_of = {name: sides for sides, name in POLYGONS.items()}
+    for size in sizes:
+        at_size = np.abs(2 * distance - size.size) <= tolerance_of(size.size)
+        angle = np.rint(np.degrees(np.angle(direction[at_size] ** 2)) / 2) % 180
+        sides = sides_of.get(size.shape, 0)
+        if sides and len(different(angle)) == (sides if sides % 2 else sides // 2):
+            return True
+    return False

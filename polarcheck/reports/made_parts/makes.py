@@ -13,7 +13,7 @@ from polarcheck.rules.rule import Rule, load_all
 from polarcheck.rules.tables import Tables
 
 #: Tables that compute the polygons of contours, where a cheaper test does not do.
-_WITH_AREAS = ("finished", "coverage", "slots", "overcuts")
+_WITH_AREAS = ("finished", "coverage", "slots", "overcuts", "part_comments")
 #: Groups of rules whose findings leave the path as it is, unless they say what they make doubtful.
 _GROUPS = ("feed", "setup", "silence")
 #: Rules of these groups that say that the part lies or is sized otherwise.
