@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import cmath
 import math
 from random import Random
 
@@ -178,3 +179,28 @@ def test_a_distance_that_is_certain_spares_cells_and_changes_nothing() -> None:
     assert found == frechet(old, new, 0.02, 1e-5, plain)
     assert found[0] == pytest.approx(0.01, abs=1e-5)
     assert bounded.cells > plain.cells
+
+
+@looped("seed", range(40), one_in=5)
+def test_a_long_path_is_measured_between_the_pairs_that_every_run_has(
+    seed: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Against the distance of the whole lines, which take more cells than are allowed here; some laps run twice."""
+    chance = Random(seed)  # noqa: S311 - numbers of a test
+    laps = chance.choice((1, 1, 1, 2))
+    points = [cmath.rect(20 + 3 * math.sin(5 * t), t) for t in np.linspace(0, laps * math.tau, laps * 300 + 1)]
+    near = [point + complex(chance.uniform(-1, 1), chance.uniform(-1, 1)) * TOLERANCE / 4 for point in points]
+    for index in chance.sample(range(5, len(points) - 5), 3):
+        # A corner out of its place, twice in a row or left out.
+        near[index] += cmath.rect(chance.uniform(2, 9) * TOLERANCE, chance.uniform(0, math.tau))
+        if chance.random() < 0.5:
+            near[index + 1] = near[index] - 0.1 * (points[index + 1] - points[index])
+    old, new = lines(*points), lines(*near)
+    corners = [[(point.real, point.imag, 0.0) for point in line] for line in (points, near)]
+    expected, _ = frechet(*corners, 0.1, 1e-7, Budget(10_000_000))
+    monkeypatch.setattr(paths, "_CELLS_OF_WHOLE", 500 if laps == 1 else 200_000)
+    found = path_deviation(old, new, TOLERANCE)
+    assert found.is_within == (expected <= TOLERANCE)
+    if not found.is_within:
+        assert found.is_exact
+        assert found.largest == pytest.approx(expected, abs=0.021 * TOLERANCE)

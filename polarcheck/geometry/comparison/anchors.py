@@ -20,9 +20,11 @@ def anchors(old: tuple[Points, Floats], new: tuple[Points, Floats], cell: float)
     width [mm], each with the one that comes to that cell for the same time.
     """
     pairs = np.concatenate([_pairs(old, new, cell, shift) for shift in (0.0, 0.5)], axis=1)
-    order = np.lexsort((-pairs[1], pairs[0]))
-    chosen = longest_rise(pairs[1][order])
-    return pairs[0][order][chosen], pairs[1][order][chosen]
+    first, second = pairs[:, np.lexsort((-pairs[1], pairs[0]))]
+    is_other = np.append(True, (np.diff(first) != 0) | (np.diff(second) != 0))[: len(first)]
+    first, second = first[is_other], second[is_other]
+    chosen = longest_rise(second)
+    return first[chosen], second[chosen]
 
 
 def _pairs(old: tuple[Points, Floats], new: tuple[Points, Floats], cell: float, shift: float) -> Rows:
@@ -57,9 +59,18 @@ def _visit(group: Rows) -> Rows:
 
 def longest_rise(values: Rows) -> Rows:
     """Return the indices of a longest strictly rising subsequence."""
-    if not len(values) or (np.diff(values) > 0).all():
-        return np.arange(len(values))
-    keep_time()
+    # A value above all before it and below all behind it belongs to every one.
+    is_chosen = np.ones(len(values), bool)
+    is_chosen[1:] = values[1:] > np.maximum.accumulate(values)[:-1]
+    is_chosen[:-1] &= values[:-1] < np.minimum.accumulate(values[::-1])[::-1][1:]
+    remaining = np.flatnonzero(~is_chosen)
+    for group in np.split(remaining, 1 + np.flatnonzero(np.diff(remaining) > 1)) if len(remaining) else ():
+        keep_time()
+        is_chosen[group[_longest_rise(values[group])]] = True
+    return np.flatnonzero(is_chosen)
+
+
+def _longest_rise(values: Rows) -> list[int]:
     tops: list[int] = []
     ends: list[int] = []
     previous: list[int] = []
@@ -76,4 +87,4 @@ def longest_rise(values: Rows) -> Rows:
     while index >= 0:
         chosen.append(index)
         index = previous[index]
-    return np.array(chosen[::-1], np.int64)
+    return chosen

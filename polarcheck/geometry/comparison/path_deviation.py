@@ -20,6 +20,7 @@ from polarcheck.foundation.arrays import Floats, Rows
 from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.comparison.anchors import anchors
 from polarcheck.geometry.comparison.free_space import Budget, Corner, Meeting, OverBudgetError, frechet, is_within
+from polarcheck.geometry.comparison.necessary_pairs import are_necessary, distances
 from polarcheck.geometry.comparison.polyline import Polyline, polyline
 from polarcheck.geometry.plane_path import SpacePath
 
@@ -85,10 +86,10 @@ def path_deviation(old: SpacePath, new: SpacePath, tolerance: float) -> PathDevi
     if pieces.largest * _COARSE > rounding:
         # Fewer chords tell a large deviation well enough.
         pieces, of_chords = _in_chords(old, new, tolerance, pieces.largest * _COARSE)
-    largest, location = _measured(pieces, tolerance)
+    largest, location, piece = _measured(pieces, tolerance)
     is_exact = False
     if largest > tolerance:
-        largest, location, is_exact = _proven(pieces, largest, location, tolerance)
+        largest, location, is_exact = _proven(pieces, largest, location, piece, tolerance)
     return PathDeviation(largest, is_exact, largest <= tolerance, rounding + of_chords, location)
 
 
@@ -180,8 +181,8 @@ def _interpolated(
     return x + 1j * c, z
 
 
-def _measured(pieces: _Pieces, tolerance: float) -> tuple[float, Location]:
-    """The largest deviation of all pieces, and where it is: the piece with the largest bound is measured first."""
+def _measured(pieces: _Pieces, tolerance: float) -> tuple[float, Location, int]:
+    """The largest deviation of all pieces, its place and piece: the piece with the largest bound is measured first."""
     budget = Budget(_CELLS_OF_PIECES)
     waiting = [(-bound, number) for number, bound in enumerate(pieces.bound.tolist())]
     heapq.heapify(waiting)
@@ -190,13 +191,13 @@ def _measured(pieces: _Pieces, tolerance: float) -> tuple[float, Location]:
         keep_time()
         bound, number = -waiting[0][0], waiting[0][1]
         if number in locations or bound <= tolerance:
-            return bound, locations.get(number) or _location_of_bound(pieces, number)
+            return bound, locations.get(number) or _location_of_bound(pieces, number), number
         old, new = (_corners(pieces.old, pieces.old_at, number), _corners(pieces.new, pieces.new_at, number))
         precision = max(tolerance * _SHARE, bound * _PRECISION)
         try:
             exact, meeting = frechet(old, new, bound, precision, budget)
         except OverBudgetError:
-            return bound, _location_of_bound(pieces, number)
+            return bound, _location_of_bound(pieces, number), number
         locations[number] = _location(pieces, number, meeting)
         heapq.heapreplace(waiting, (-exact, number))
 
@@ -229,30 +230,48 @@ def _location_of_bound(pieces: _Pieces, piece: int) -> Location:
     return Location(old, new, old_z, new_z, old_move, new_move)
 
 
-def _proven(pieces: _Pieces, largest: float, location: Location, tolerance: float) -> tuple[float, Location, bool]:
-    """The deviation for any pairing of corners, its place, and whether it is exact: long paths take too many cells."""
-    ends = [np.array([0, len(line) - 1]) for line in (pieces.old, pieces.new)]
-    corners = [_corners(line, pair, 0) for line, pair in zip((pieces.old, pieces.new), ends, strict=True)]
-    whole = msgspec.structs.replace(pieces, old_at=ends[0], new_at=ends[1])
+def _proven(
+    pieces: _Pieces, largest: float, location: Location, piece: int, tolerance: float
+) -> tuple[float, Location, bool]:
+    """
+    The deviation for any pairing of corners, its place, and whether it is exact: long paths take too many cells.
+
+    location, piece: where two points are farthest apart in the pieces.
+    """
     precision = max(tolerance * _SHARE, largest * _PRECISION)
     # However the corners are paired, a point is never nearer to the other path than to the nearest point of it.
-    least = max(_nearest(pieces.new, location.old, location.old_z), _nearest(pieces.old, location.new, location.new_z))
+    sides = (pieces.new, location.old, location.old_z), (pieces.old, location.new, location.new_z)
+    least = max(float(distances(*side).min()) for side in sides)
+    parts = _between_necessary(pieces, largest, tolerance)
+    worst = int(np.searchsorted(parts.old_at[1:-1], pieces.old_at[piece], side="right"))
+    budget, enough = Budget(_CELLS_OF_WHOLE), tolerance
+    hits: dict[int, tuple[float, Meeting]] = {}
     try:
-        if least <= tolerance and is_within(corners[0], corners[1], tolerance, Budget(_CELLS_OF_PROOF)):
-            return tolerance, location, False
-        exact, meeting = frechet(corners[0], corners[1], largest, precision, Budget(_CELLS_OF_WHOLE), least)
+        for number in (worst, *np.flatnonzero(parts.bound > tolerance).tolist()):
+            if number in hits or parts.bound[number] <= enough:
+                continue
+            old, new = (_corners(parts.old, parts.old_at, number), _corners(parts.new, parts.new_at, number))
+            lower = max(enough, least) if number == worst else enough
+            if lower <= enough and is_within(old, new, enough, Budget(_CELLS_OF_PROOF)):
+                continue
+            hits[number] = frechet(old, new, largest, precision, budget, lower)
+            # Of places that deviate as much, but for the precision, the first one counts.
+            enough = max(enough, hits[number][0] - 2 * precision)
     except OverBudgetError:
         return largest, location, False
-    return exact, _location(whole, 0, meeting), True
+    if not hits:
+        return tolerance, location, False
+    exact = max(deviation for deviation, _ in hits.values())
+    first = min(number for number, (deviation, _) in hits.items() if deviation >= exact - 2 * precision)
+    return exact, _location(parts, first, hits[first][1]), True
 
 
-def _nearest(line: Polyline, point: complex, z: float) -> float:
-    """The least distance of a point from a polyline [mm]."""
-    if len(line) == 1:
-        return float(np.hypot(abs(line.point[0] - point), line.z[0] - z))
-    start, vector = line.point[:-1] - point, np.diff(line.point)
-    z_start, rise = line.z[:-1] - z, np.diff(line.z)
-    length = np.abs(vector) ** 2 + rise**2
-    along = -((start.conj() * vector).real + z_start * rise)
-    share = np.clip(np.divide(along, length, out=np.zeros(len(length)), where=length > 0), 0, 1)
-    return float(np.hypot(np.abs(start + share * vector), z_start + share * rise).min())
+def _between_necessary(pieces: _Pieces, largest: float, tolerance: float) -> _Pieces:
+    """Pieces joined between the corners beside large deviations that every pairing within the largest one has."""
+    is_small = pieces.bound <= tolerance
+    corner = 1 + np.flatnonzero(is_small[1:] != is_small[:-1])
+    pairs = pieces.old_at[corner], pieces.new_at[corner]
+    corner = corner[are_necessary(pieces.old, pieces.new, *pairs, largest)] if len(corner) else corner
+    ends = np.concatenate(([0], corner, [len(is_small)]))
+    bound = np.maximum.reduceat(pieces.bound, ends[:-1])
+    return _Pieces(pieces.old, pieces.new, pieces.old_at[ends], pieces.new_at[ends], bound, np.zeros(len(bound)))
