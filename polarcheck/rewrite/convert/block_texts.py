@@ -63,7 +63,9 @@ class BlockTexts:
     def content(self, block: int) -> str:
         """The words of a block as they are written, without N, block skip and comments."""
         if block not in self._contents:
-            self._contents[block] = _behind_head(without_comments(self.text, block))
+            is_bare = block not in self.with_comment
+            written = self.text.written(self.text.blocks, block) if is_bare else without_comments(self.text, block)
+            self._contents[block] = _behind_head(written)
         return self._contents[block]
 
     def rest(self, block: int, row: int) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 from collections.abc import Collection, Sequence
 
@@ -116,15 +115,14 @@ class _Writer:
 
         What is written for them must not depend on the state before them.
         """
-        block, depth = self.trace.run.block, self.trace.run.depth
-        return {
-            int(block[row])
-            for before, row in itertools.pairwise(rows)
-            if depth[row] != depth[before] or block[row] <= block[before]
-        }
+        block, depth = self.trace.run.block[rows], self.trace.run.depth[rows]
+        jumps = (np.diff(depth) != 0) | (np.diff(block) <= 0)
+        return set(block[1:][jumps].tolist())
 
     def _row(self, row: int, enter: int, leave: int, pen: Pen, turn: complex) -> list[NewBlock]:
         """The blocks in the place of one."""
+        if self.words.is_plain[row] and row not in (enter, leave) and not self.translation.why_not(row):
+            return self._moves(row, pen, turn, ())
         if (call := self._call(row)) is not None:
             return [NewBlock(tuple(call))]
         geometry, remaining = self.words.divided(row, self.translation.measures.words_of(row), row in (enter, leave))

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from polarcheck.columns.trace import Trace
+from polarcheck.foundation.arrays import Mask, cached_property, is_among, mask_at
 from polarcheck.foundation.states import MOVES, STATES
 from polarcheck.program.machines.code_lists import numbers
 from polarcheck.program.machines.code_tables import code_numbers
@@ -12,7 +15,8 @@ from polarcheck.program.machines.machine import Machine
 from polarcheck.rewrite.convert.g_meanings import GMeanings
 
 #: Lists of codes that the moves say themselves.
-_OF_GEOMETRY = (*MOVES.values(), *STATES["distance"], *STATES["plane"], *STATES["side"])
+_OF_MOVES = (*MOVES.values(), *STATES["distance"], *STATES["plane"])
+_OF_GEOMETRY = (*_OF_MOVES, *STATES["side"])
 #: Keys of the profile by which the geometry of sections is written.
 _OF_CONTROL = (
     *("least_increment", "least_increment_inch", "number_without_point", "motion_codes", "native_words"),
@@ -47,6 +51,21 @@ class SectionWords:
         self.is_dwell = trace.blocks.listed("dwell")
         self._has_arguments = ~trace.modal.uses_axes | trace.blocks.codes(*trace.machine.macro.flow_codes)
         self._switch_codes = {*numbers(polar.on), *numbers(polar.off), *numbers(polar.ended_by)}
+
+    @cached_property
+    def is_plain(self) -> Mask:
+        """A boolean per row: its words say where the tool goes and nothing else, and none is computed or for a side."""
+        run, writing = self.trace.run, self.trace.machine.writing
+        # A block that begins with one of these may be a call or a return in the words of the profile.
+        of_calls = {ord(text[0].upper()) for text in (writing.subprogram_call, writing.subprogram_return) if text}
+        address = run.words.address
+        is_head, is_geometry = is_among(address, [*map(ord, "NO/")]), is_among(address, [*self._addresses - of_calls])
+        is_geometry[list(self._virtual)] = True
+        codes = np.flatnonzero(address == ord("G"))
+        is_geometry[codes] = [self.key(index) in _OF_MOVES for index in codes.tolist()]
+        is_plain = mask_at(len(self.trace), run.row[is_geometry])
+        is_plain[run.row[~(is_geometry | is_head)]] = False
+        return is_plain & ~(self.is_dwell | self._has_arguments | self.trace.text.blocks.is_macro[run.block])
 
     @property
     def is_same(self) -> bool:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from bisect import bisect_right
 from collections.abc import Collection, Mapping, Sequence
+from itertools import chain, pairwise, zip_longest
 
 import msgspec
 import numpy as np
@@ -60,11 +61,14 @@ def decision_comment(text: str) -> str:
 
 def block_text(block: NewBlock, style: Style, machine: Machine) -> str:
     """A block as it is written."""
-    text = last = ""
-    for word in (word.lower() for word in block.words) if style.lower_case else block.words:
+    words = [word.lower() for word in block.words] if style.lower_case else block.words
+    if style.blank == " ":
+        text = " ".join(words)
+    else:
         # Only words of a letter and a number part themselves.
-        part = style.blank if _PLAIN_WORD.fullmatch(word) and _PLAIN_WORD.fullmatch(last) else " "
-        text, last = f"{text}{part}{word}" if text else word, word
+        is_plain = [bool(_PLAIN_WORD.fullmatch(word)) for word in words]
+        parts = (style.blank if all(pair) else " " for pair in pairwise(is_plain))
+        text = "".join(chain.from_iterable(zip_longest(words, parts, fillvalue="")))
     return " ".join(part for part in (text, comment_text(block.comment, machine) if block.comment else "") if part)
 
 
@@ -82,8 +86,10 @@ def edits_of(
     """
     text = original.trace.text
     sequence = _Sequence(text, style)
+    with_more = {*text.comments.block.tolist(), *text.labels.block.tolist()}
     return [
-        _edit(text, index, blocks[index], sequence, style, machine, index in without_skip) for index in sorted(blocks)
+        _edit(text, index, blocks[index], sequence, style, machine, index in without_skip, index in with_more)
+        for index in sorted(blocks)
     ]
 
 
@@ -210,8 +216,8 @@ class _Sequence:
 
         until: a later block, in the place of which and of those before it they stand, too.
         """
-        first = bisect_right(self.blocks, index)
-        if not self.is_on or count <= 0 or not first:
+        first = bisect_right(self.blocks, index) if self.is_on and count > 0 else 0
+        if not first:
             return [""] * count
         next_index = bisect_right(self.blocks, index if until is None else until)
         last = int(self.values[first - 1])
@@ -243,20 +249,23 @@ def _edit(
     style: Style,
     machine: Machine,
     is_without_skip: bool,
+    has_more: bool,
 ) -> Replace:
+    """has_more: the block has comments or labels."""
     start = int(text.blocks.start[index])
     content = text.written(text.blocks, index)
     begin, finish = content_of(text, index)
     lead = begin - start
-    head = _HEAD.match(without_comments(text, index), lead)
-    labels = range(*stretch(text.labels.block, index, index + 1))
+    head = _HEAD.match(without_comments(text, index) if has_more else content, lead)
+    labels = range(*stretch(text.labels.block, index, index + 1)) if has_more else range(0)
     head_end = max([head.end() if head else lead, *(int(text.labels.end[label]) - start for label in labels)])
     kept = content[lead:head_end].strip()
     if is_without_skip:
         kept = _SKIP.sub("", kept).strip()
     number = _NUMBER.search(kept)
     written = [block_text(block, style, machine) for block in blocks]
-    remarks = "".join(f" {comment_text(comment, machine)}" for comment in comments_of(text, index))
+    comments = comments_of(text, index) if has_more else ()
+    remarks = "".join(f" {comment_text(comment, machine)}" for comment in comments)
     if not written and not remarks and not (number and int(number[1]) in sequence.references) and not len(labels):
         return line_without(text.source, begin, finish)
     skip = _SKIP.search(kept)
@@ -264,7 +273,7 @@ def _edit(
     heads = [kept, *(style.blank.join(part for part in (skip[0] if skip else "", n) if part) for n in numbers)]
     lines = [_joined(head, line, style) for head, line in zip(heads, written or [""], strict=True)]
     lines[0] = (lines[0] + remarks).strip()
-    return begin, finish, _parting(text, index, machine).join(lines)
+    return begin, finish, _parting(text, index, machine).join(lines) if len(lines) > 1 else lines[0]
 
 
 def _joined(head: str, line: str, style: Style) -> str:

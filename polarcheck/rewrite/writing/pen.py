@@ -43,7 +43,7 @@ class Pen:
         self.at = complex(math.nan, math.nan)
         self.z = math.nan
         control, polar, writing = machine.control, machine.polar, machine.writing
-        self._codes = {motion: written for written, motion in control.motion_codes.items()}
+        self._codes = {motion: self.numbers.code(written) for written, motion in control.motion_codes.items()}
         pairs = [pair for word, pair in polar.virtual_axis_by_word.items() if word in writing.switch.split()]
         self.linear, self.virtual = machine.linear_address, pairs[0][0] if pairs else polar.virtual_axis
         if self.linear in ("", "Z"):
@@ -56,6 +56,8 @@ class Pen:
         self._written: list[int | None] = [None, None, None]
         self._motion = ""
         self.feed_word, self._wanted_feed = "", ""
+        #: The F words of the feeds that were written.
+        self._feed_words: dict[float, str] = {}
 
     @property
     def written_point(self) -> complex:
@@ -186,11 +188,12 @@ class Pen:
         words: list[str] = []
         moves_z = z is not None and self.numbers.increments(z) != self._written[2]
         if end is not None:
-            moves_plane = self._rounded(end) != tuple(self._written[:2])
+            counts = self._rounded(end)
+            moves_plane = counts != tuple(self._written[:2])
             together = moves_z and z != self.z and abs(end - self.at) > 0
             if moves_plane and together and self.machine.polar.other_axes == "forbidden":
                 raise RefusedError([self._refusal("Z cannot move beside the axes of the plane there")])
-            words += self._axes(end, self.style.repeats_axes and moves_plane)
+            words += self._axes(counts, self.style.repeats_axes and moves_plane)
             self.at = end
         if z is not None:
             words += self._depth(z)
@@ -198,10 +201,10 @@ class Pen:
             return []
         return [self._block(codes, code if words else "", words, feed if code != "G0" else None, code == "G0")]
 
-    def _axes(self, end: complex, everything: bool) -> list[str]:
+    def _axes(self, counts: tuple[int, int], everything: bool) -> list[str]:
         """The words of the linear and of the virtual axis; those that do not change are left out."""
         words = []
-        for index, (name, count) in enumerate(zip((self.linear, self.virtual), self._rounded(end), strict=True)):
+        for index, (name, count) in enumerate(zip((self.linear, self.virtual), counts, strict=True)):
             if everything or count != self._written[index]:
                 words.append(self.numbers.word(name, count))
             self._written[index] = count
@@ -232,7 +235,7 @@ class Pen:
             blocks = self._arc(first, first.end, middle, feed, codes, halvings - 1)
             return blocks + self._arc(second, end, z, feed, () if blocks else codes, halvings - 1)
         code = "G3" if arc.sweep > 0 else "G2"
-        axes = self._axes(end, True)
+        axes = self._axes(self._rounded(end), True)
         axes += [] if z is None else self._depth(z)
         self.at = end
         return [self._block(codes, code, [*axes, *words], feed)]
@@ -246,7 +249,9 @@ class Pen:
         motion = self._code(code) if code else ""
         left_out = motion == self._motion and not self.style.repeats_motion
         if feed is not None:
-            self._wanted_feed = "F" + self.numbers.feed(feed)
+            if feed not in self._feed_words:
+                self._feed_words[feed] = "F" + self.numbers.feed(feed)
+            self._wanted_feed = self._feed_words[feed]
         text = "" if without_feed else self._wanted_feed
         has_feed = bool(text) and (text != self.feed_word or (self.style.repeats_feed and bool(code)))
         if code:
@@ -257,7 +262,9 @@ class Pen:
         return NewBlock(all_words)
 
     def _code(self, code: str) -> str:
-        return self.numbers.code(self._codes.get(code, code))
+        if code not in self._codes:
+            self._codes[code] = self.numbers.code(code)
+        return self._codes[code]
 
     def _blocks(self, texts: Sequence[str]) -> list[NewBlock]:
         return [NewBlock(tuple(text.split())) for text in texts]

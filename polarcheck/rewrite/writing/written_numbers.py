@@ -34,6 +34,7 @@ class Numbers:
         control = machine.control
         self.scale = MM_PER_INCH if inch else 1.0
         self.least = control.least_increment_inch if inch else control.least_increment
+        self._decimals = _decimals(self.least)
 
     @property
     def step(self) -> float:
@@ -50,10 +51,10 @@ class Numbers:
 
     def of_increments(self, count: int) -> str:
         """A length of so many least increments as it is written."""
-        style = self.style
-        is_fraction = not float(count * self.least).is_integer()
-        decimals = style.fraction_decimals if is_fraction and style.decimals is None else style.decimals
-        return self._checked(_fixed(count * self.least, self.least), decimals, style.point)
+        style, value = self.style, float(count * self.least)
+        has_own = style.decimals is not None or value.is_integer()
+        decimals = style.decimals if has_own else style.fraction_decimals
+        return self._checked(f"{value:.{self._decimals}f}", decimals, style.point)
 
     def word(self, address: str, count: int) -> str:
         """A word of least increments; with = where its address is a name or ends with a digit, as C2=10."""
@@ -63,7 +64,8 @@ class Numbers:
     def angle(self, degrees: float) -> str:
         """An angle [deg] as it is written."""
         least = self.machine.control.least_increment
-        return self._checked(_fixed(round(degrees / least) * least, least), self.style.decimals, self.style.point)
+        fixed = f"{round(degrees / least) * least:.{_decimals(least)}f}"
+        return self._checked(fixed, self.style.decimals, self.style.point)
 
     def rate(self, value: float) -> str:
         """F as a number in the units of the program, be it 1/min or deg/min: four decimals at most."""
@@ -87,24 +89,23 @@ class Numbers:
 
     def _checked(self, fixed: str, decimals: int | None, point: bool, counts: bool = True) -> str:
         """A number in the style of the program. counts: without a point the control may count it in increments."""
-        sign, text = ("-", fixed[1:]) if fixed.startswith("-") else ("", fixed)
-        whole, _, rest = text.partition(".")
+        whole, _, rest = fixed.lstrip("-").partition(".")
         rest = rest.rstrip("0")
+        has_whole = whole.strip("0") != ""
+        is_zero = not has_whole and not rest
+        sign = "-" * (fixed.startswith("-") and not is_zero)
         if decimals is not None:
             rest = rest.ljust(decimals, "0")
-        is_zero = not int(whole) and not rest.strip("0")
-        if is_zero:
-            sign = ""
         if len(whole + rest) > self.machine.control.digit_limit:
             raise RefusedError([Refusal(self.line, f"{fixed} has more digits than the control takes")])
         needs_point = counts and not is_zero and self.machine.control.number_without_point != "whole-unit"
         if not rest:
             return sign + whole + "." * (needs_point or (self.style.zero_point if is_zero else point))
-        if not int(whole) and not self.style.leading_zero:
+        if not has_whole and not self.style.leading_zero:
             whole = ""
         return f"{sign}{whole}.{rest}"
 
 
-def _fixed(value: float, least: float) -> str:
-    """A multiple of the least increment in decimals, without exponent."""
-    return f"{value:.{max(0, math.ceil(-math.log10(least) - 1e-9))}f}"
+def _decimals(least: float) -> int:
+    """The digits behind the point of multiples of a least increment."""
+    return max(0, math.ceil(-math.log10(least) - 1e-9))
