@@ -5,7 +5,8 @@ from __future__ import annotations
 import msgspec
 
 from polarcheck.foundation.finding import VERDICTS
-from polarcheck.reports.pages.json_schema import Schema, headed, without_nan
+from polarcheck.program.machines.job import OfPrograms
+from polarcheck.reports.pages.json_schema import OF_JOBS, Schema, describe, headed, without_nan
 from polarcheck.rewrite.certify.manifest import DECIDED, Manifest
 from polarcheck.rewrite.certify.results import SCHEMA, STATES, Certificate
 
@@ -49,7 +50,9 @@ def _rewriting() -> Schema:
 
 def _manifest() -> Schema:
     content: Schema = without_nan(msgspec.json.schema(Manifest))
-    for kind in ("Manifest", "Control", "Case"):
+    kinds = "Manifest", "Control", "Case"
+    describe(content, {**dict.fromkeys(kinds, OfPrograms), **OF_JOBS})
+    for kind in kinds:
         for key in DECIDED:
             del content["$defs"][kind]["properties"][key]
     return content

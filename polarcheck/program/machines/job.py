@@ -28,29 +28,35 @@ _MOST = 10**12
 
 
 Level = Literal["error", "warning", "note", "off"]
+Unit = Literal["mm", "inch"]
 Reason = Annotated[str, msgspec.Meta(pattern=r"\S", description="why", extra={EXPECTED: "a text that says why"})]
+_Width = Annotated[float, msgspec.Meta(gt=0, le=_LARGEST_LATHE)]
+_NotNegative = Annotated[float, msgspec.Meta(ge=0, le=_LARGEST_LATHE)]
+_Coordinate = Annotated[float, msgspec.Meta(ge=-_LARGEST_LATHE, le=_LARGEST_LATHE)]
+_Bound = Annotated[int, msgspec.Meta(ge=1, le=_MOST)]
 
 
 class Tool(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """An entry of the offset table and what is mounted there; NaN is unknown. source: who says so."""
+    """
+    An entry of the offset table and what is mounted there; NaN is unknown. source: who says so.
+
+    radius: R of the offset table, with wear
+    nose: T of the offset table; 0 for a mill
+    x_wear: X of the wear in the offset table
+    diameter: of the cutter, where R is not half of it
+    teeth: of the cutter, for the chip load
+    """
 
     source: ClassVar[str] = "job"
 
     # A negative R is the builder's own way to make a contour a little larger.
-    radius: Annotated[
-        float,
-        msgspec.Meta(ge=-_LARGEST_CUTTER, le=_LARGEST_CUTTER, description="R of the offset table, with wear"),
-    ] = math.nan
-    nose: Annotated[int, msgspec.Meta(ge=0, le=9, description="T of the offset table; 0 for a mill")] | None = None
-    x_wear: Annotated[
-        float, msgspec.Meta(ge=-_LARGEST_LATHE, le=_LARGEST_LATHE, description="X of the wear in the offset table")
-    ] = 0.0
-    diameter: Annotated[
-        float, msgspec.Meta(gt=0, le=2 * _LARGEST_CUTTER, description="of the cutter, where R is not half of it")
-    ] = math.nan
+    radius: Annotated[float, msgspec.Meta(ge=-_LARGEST_CUTTER, le=_LARGEST_CUTTER)] = math.nan
+    nose: Annotated[int, msgspec.Meta(ge=0, le=9)] | None = None
+    x_wear: _Coordinate = 0.0
+    diameter: Annotated[float, msgspec.Meta(gt=0, le=2 * _LARGEST_CUTTER)] = math.nan
     mount: Literal["axial", "radial"] | None = None
     shape: Literal["flat", "ball"] | None = None
-    teeth: Annotated[int, msgspec.Meta(ge=1, le=1000, description="of the cutter, for the chip load")] | None = None
+    teeth: Annotated[int, msgspec.Meta(ge=1, le=1000)] | None = None
 
 
 class AskedTool(Tool, frozen=True):
@@ -66,22 +72,23 @@ class PunchedTool(Tool, frozen=True):
 
 
 class Stock(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The bar or blank. unknown: nothing is taken from the turning or the comments of the program either."""
+    """
+    The bar or blank. unknown: nothing is taken from the turning or the comments of the program either.
 
-    diameter: Annotated[float, msgspec.Meta(gt=0, le=_LARGEST_LATHE, description="of a round bar")] = math.nan
-    hexagon: Annotated[float, msgspec.Meta(gt=0, le=_LARGEST_LATHE, description="across flats of a hexagon bar")] = (
-        math.nan
-    )
-    bore: Annotated[float, msgspec.Meta(ge=0, le=_LARGEST_LATHE, description="inside diameter of a tube")] = 0.0
-    face: Annotated[
-        float, msgspec.Meta(ge=-_LARGEST_LATHE, le=_LARGEST_LATHE, description="Z of its face before milling")
-    ] = math.nan
-    clearance: Annotated[
-        float, msgspec.Meta(ge=0, le=_LARGEST_LATHE, description="between bar and cutter at the approach")
-    ] = 0.0
-    unknown: Annotated[bool, msgspec.Meta(description="take no bar from the turning or the comments of programs")] = (
-        False
-    )
+    diameter: of a round bar
+    hexagon: across flats of a hexagon bar
+    bore: inside diameter of a tube
+    face: Z of its face before milling
+    clearance: between bar and cutter at the approach
+    unknown: take no bar from the turning or the comments of programs
+    """
+
+    diameter: _Width = math.nan
+    hexagon: _Width = math.nan
+    bore: _NotNegative = 0.0
+    face: _Coordinate = math.nan
+    clearance: _NotNegative = 0.0
+    unknown: bool = False
 
     def __post_init__(self) -> None:
         if not are_numbers(self.diameter, self.hexagon, self.bore):
@@ -98,24 +105,26 @@ class Stock(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
 class WorkOffset(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Where X0 of a work offset lies: 0 on the spindle axis."""
 
-    x: Annotated[float, msgspec.Meta(ge=-_LARGEST_LATHE, le=_LARGEST_LATHE)] = 0.0
+    x: _Coordinate = 0.0
 
 
 class Running(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """How programs are executed, and what a run may take; reaching a bound is a finding, never a hang."""
+    """
+    How programs are executed, and what a run may take; reaching a bound is a finding, never a hang.
+
+    subprograms: folders in which called programs are looked for, and nowhere else
+    max_blocks: executed blocks beyond those of the file
+    max_statements: macro statements, calls and returns, likewise
+    max_seconds: seconds of processor time for each MB
+    variables: values of #-variables, by number
+    """
 
     block_skip: Literal["off", "on", "both"] = "both"
-    subprograms: Annotated[
-        list[str], msgspec.Meta(description="folders in which called programs are looked for, and nowhere else")
-    ] = []
-    max_blocks: Annotated[int, msgspec.Meta(ge=1, le=_MOST, description="executed blocks beyond those of the file")] = (
-        200_000
-    )
-    max_statements: Annotated[
-        int, msgspec.Meta(ge=1, le=_MOST, description="macro statements, calls and returns, likewise")
-    ] = 50_000
-    max_seconds: Annotated[float, msgspec.Meta(gt=0, description="seconds of processor time for each MB")] = 8.0
-    variables: Annotated[dict[Variable, float], msgspec.Meta(description="values of #-variables, by number")] = {}
+    subprograms: list[str] = []
+    max_blocks: _Bound = 200_000
+    max_statements: _Bound = 50_000
+    max_seconds: Annotated[float, msgspec.Meta(gt=0)] = 8.0
+    variables: dict[Variable, float] = {}
 
 
 class Reasoned(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -162,53 +171,45 @@ class OfPrograms(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_field
     """
     What a job file says of all its programs or, under [[programs]], of some of them. tools: by the keys of their
     offsets (offset_keys.canonical). work_offsets: by name (G54).
+
+    machine: name or TOML file of the lathe
+    units: of the lengths in this file; else the program's own
+    program_units: of programs with neither G20 nor G21
+    tools: tool offsets by number, 8 for T0808
+    radius_from_comments: take R of unknown offsets from comments such as 3/4 DIA. CUTTER
+    work_offsets: where X0 of each work offset lies, by its code (G54)
+    offsets: file with the offset table of the control, punched out or copied
+    select: only these rules, groups or alarms
+    ignore: all rules but these, groups or alarms
+    severities: severity by rule, group or alarm; with a reason it leaves the verdict as it is
+    limits: [limits] of the lathe, over its own
+    fail_on: the least severity that fails
+    max_warnings: more warnings than this, over the run, fail it
+    strict: fail where a file is unverified, too
+    encoding: of the programs: cp1252, shift_jis; else found out
+    inline: heed comments of programs that allow a finding
+    baseline: file of known findings, which `polarcheck baseline create` writes
     """
 
-    machine: Annotated[str, msgspec.Meta(description="name or TOML file of the lathe")] | None = None
-    units: (
-        Annotated[
-            Literal["mm", "inch"], msgspec.Meta(description="of the lengths in this file; else the program's own")
-        ]
-        | None
-    ) = None
-    program_units: (
-        Annotated[Literal["mm", "inch"], msgspec.Meta(description="of programs with neither G20 nor G21")] | None
-    ) = None
-    tools: Annotated[dict[OffsetKey, Tool], msgspec.Meta(description="tool offsets by number, 8 for T0808")] = {}
+    machine: str | None = None
+    units: Unit | None = None
+    program_units: Unit | None = None
+    tools: dict[OffsetKey, Tool] = {}
     stock: Stock = Stock()
     run: Running = Running()
-    radius_from_comments: Annotated[
-        bool, msgspec.Meta(description="take R of unknown offsets from comments such as 3/4 DIA. CUTTER")
-    ] = False
-    work_offsets: Annotated[
-        dict[str, WorkOffset], msgspec.Meta(description="where X0 of each work offset lies, by its code (G54)")
-    ] = {}
-    offsets: (
-        Annotated[str, msgspec.Meta(description="file with the offset table of the control, punched out or copied")]
-        | None
-    ) = None
-    select: Annotated[WrittenRules, msgspec.Meta(description="only these rules, groups or alarms")] = []
-    ignore: Annotated[WrittenRules, msgspec.Meta(description="all rules but these, groups or alarms")] = []
-    severities: Annotated[
-        dict[str, WrittenLevel],
-        msgspec.Meta(description="severity by rule, group or alarm; with a reason it leaves the verdict as it is"),
-    ] = {}
-    limits: Annotated[dict[str, float | bool], msgspec.Meta(description="[limits] of the lathe, over its own")] = {}
-    fail_on: Annotated[
-        Literal["error", "warning", "note", "never"], msgspec.Meta(description="the least severity that fails")
-    ] = "warning"
-    max_warnings: (
-        Annotated[int, msgspec.Meta(ge=0, le=MOST, description="more warnings than this, over the run, fail it")] | None
-    ) = None
-    strict: Annotated[bool, msgspec.Meta(description="fail where a file is unverified, too")] = False
-    encoding: Annotated[str, msgspec.Meta(description="of the programs: cp1252, shift_jis; else found out")] | None = (
-        None
-    )
-    inline: Annotated[bool, msgspec.Meta(description="heed comments of programs that allow a finding")] = True
-    baseline: (
-        Annotated[str, msgspec.Meta(description="file of known findings, which `polarcheck baseline create` writes")]
-        | None
-    ) = None
+    radius_from_comments: bool = False
+    work_offsets: dict[str, WorkOffset] = {}
+    offsets: str | None = None
+    select: WrittenRules = []
+    ignore: WrittenRules = []
+    severities: dict[str, WrittenLevel] = {}
+    limits: dict[str, float | bool] = {}
+    fail_on: Literal["error", "warning", "note", "never"] = "warning"
+    max_warnings: Annotated[int, msgspec.Meta(ge=0, le=MOST)] | None = None
+    strict: bool = False
+    encoding: str | None = None
+    inline: bool = True
+    baseline: str | None = None
 
     def __post_init__(self) -> None:
         tools: dict[str, Tool] = {}
@@ -222,41 +223,33 @@ class OfPrograms(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_field
 
 
 class Programs(OfPrograms, frozen=True):
-    """What applies to some programs, over what the file says of all; of several entries the last one counts."""
+    """
+    What applies to some programs, over what the file says of all; of several entries the last one counts.
 
-    files: Annotated[
-        list[str],
-        msgspec.Meta(
-            min_length=1,
-            description="patterns of names (O12*.nc) or paths (lathe7/**), relative to this file; capitals are ignored",
-        ),
-    ]
+    files: patterns of names (O12*.nc) or paths (lathe7/**), relative to this file; capitals are ignored
+    """
+
+    files: Annotated[list[str], msgspec.Meta(min_length=1)]
 
 
 class Job(OfPrograms, frozen=True):
-    """A job file, or what of it and its entries applies to one program."""
+    """
+    A job file, or what of it and its entries applies to one program.
 
-    extensions: Annotated[
-        list[str], msgspec.Meta(description="endings of the programs in a folder, instead of .nc, .tap and others")
-    ] = []
-    exclude: Annotated[
-        list[str], msgspec.Meta(description="patterns of files and folders that no walk through a folder finds")
-    ] = []
-    extend: (
-        Annotated[
-            str,
-            msgspec.Meta(description="another job file, or the folder of one, whose values apply where this has none"),
-        ]
-        | None
-    ) = None
-    root: Annotated[bool, msgspec.Meta(description="no job file of a folder above is meant for these programs")] = False
-    part: Annotated[
-        list[Part],
-        msgspec.Meta(description="what programs should make; of entries for one section and Z the last one counts"),
-    ] = []
-    programs: Annotated[
-        list[Programs], msgspec.Meta(description="entries for some of the programs, in their order")
-    ] = []
+    extensions: endings of the programs in a folder, instead of .nc, .tap and others
+    exclude: patterns of files and folders that no walk through a folder finds
+    extend: another job file, or the folder of one, whose values apply where this has none
+    root: no job file of a folder above is meant for these programs
+    part: what programs should make; of entries for one section and Z the last one counts
+    programs: entries for some of the programs, in their order
+    """
+
+    extensions: list[str] = []
+    exclude: list[str] = []
+    extend: str | None = None
+    root: bool = False
+    part: list[Part] = []
+    programs: list[Programs] = []
 
 
 def from_table(table: Any, title: str) -> Job:

@@ -102,8 +102,9 @@ class Frames(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
 
 
 def meanings(table: type) -> dict[str, str]:
-    """What each key of a table of the profile means, in the words of its docstring."""
-    return dict(re.findall(r"^ {4}(\w+): (.+)$", table.__doc__ or "", re.MULTILINE))
+    """What each key of a table of the profile or of a job means, in the words of its docstring."""
+    texts = [kind.__doc__ or "" for kind in reversed(table.__mro__)]
+    return dict(re.findall(r"^ {4}(\w+): (.+)$", "\n".join(texts), re.MULTILINE))
 
 
 Value = TypeVar("Value")

@@ -54,6 +54,7 @@ Shape = Literal[
     "triangle", "square", "pentagon", "hexagon", "heptagon", "octagon", "nonagon", "decagon", "hendecagon", "dodecagon",
     "polygon", "circle", "rectangle", "flat", "flats", "slot",
 ]  # fmt: skip
+Size = Annotated[float, msgspec.Meta(gt=0, le=_LARGEST)]
 Coordinate = Annotated[float, msgspec.Meta(ge=-_LARGEST, le=_LARGEST)]
 
 
@@ -62,58 +63,49 @@ class Part(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     What one contour should be, as a shape with its numbers or as a drawing; NaN and None are not given.
 
     Lengths are in the units of the file, x is a radius, angles are in deg from C0.
+
+    shape: with its numbers; polygon needs sides
+    drawing: DXF file, relative to this file, in place of a shape
+    sides: of a polygon
+    count: of flats; 2 unless given
+    across_flats: twice the distance from the center to a side
+    across_corners: twice the distance from the center to a sharp corner
+    diameter: of a circle, or of the round that flats are milled on
+    width: of a slot or rectangle
+    length: along turned; of a slot over its round ends
+    distance: from the center to a flat
+    corner_radius: R of the corners
+    chamfer: what a corner takes off each of its sides
+    turned: from C0 to the normal of a flat, or along a length [deg]; else any
+    center: x, as a radius, and c of the middle
+    inside: a pocket, the part stands around it
+    z: of the contour; else the deepest
+    tolerance: how far the part may differ; 0.02 mm unless given
+    layers: of the drawing: only what lies on these; else all that show a contour
+    section: the polar section, 1 for the first; else any
+    files: of which programs: patterns of names or paths as under [[programs]]; else all
     """
 
-    shape: Annotated[Shape, msgspec.Meta(description="with its numbers; polygon needs sides")] | None = None
-    drawing: Annotated[str, msgspec.Meta(description="DXF file, relative to this file, in place of a shape")] | None = (
-        None
-    )
-    sides: Annotated[int, msgspec.Meta(ge=3, le=360, description="of a polygon")] | None = None
-    count: Annotated[int, msgspec.Meta(ge=2, le=360, description="of flats; 2 unless given")] | None = None
-    across_flats: Annotated[
-        float, msgspec.Meta(gt=0, le=_LARGEST, description="twice the distance from the center to a side")
-    ] = math.nan
-    across_corners: Annotated[
-        float, msgspec.Meta(gt=0, le=_LARGEST, description="twice the distance from the center to a sharp corner")
-    ] = math.nan
-    diameter: Annotated[
-        float, msgspec.Meta(gt=0, le=_LARGEST, description="of a circle, or of the round that flats are milled on")
-    ] = math.nan
-    width: Annotated[float, msgspec.Meta(gt=0, le=_LARGEST, description="of a slot or rectangle")] = math.nan
-    length: Annotated[
-        float, msgspec.Meta(gt=0, le=_LARGEST, description="along turned; of a slot over its round ends")
-    ] = math.nan
-    distance: Annotated[float, msgspec.Meta(gt=0, le=_LARGEST, description="from the center to a flat")] = math.nan
-    corner_radius: Annotated[float, msgspec.Meta(gt=0, le=_LARGEST, description="R of the corners")] = math.nan
-    chamfer: Annotated[
-        float, msgspec.Meta(gt=0, le=_LARGEST, description="what a corner takes off each of its sides")
-    ] = math.nan
-    turned: Annotated[
-        float,
-        msgspec.Meta(ge=-360, le=360, description="from C0 to the normal of a flat, or along a length [deg]; else any"),
-    ] = math.nan
-    center: Annotated[
-        tuple[Coordinate, Coordinate], msgspec.Meta(description="x, as a radius, and c of the middle")
-    ] = (0.0, 0.0)
-    inside: Annotated[bool, msgspec.Meta(description="a pocket, the part stands around it")] = False
-    z: Annotated[float, msgspec.Meta(ge=-_LARGEST, le=_LARGEST, description="of the contour; else the deepest")] = (
-        math.nan
-    )
-    tolerance: Annotated[
-        float, msgspec.Meta(gt=0, le=_LARGEST, description="how far the part may differ; 0.02 mm unless given")
-    ] = math.nan
-    layers: Annotated[
-        list[str], msgspec.Meta(description="of the drawing: only what lies on these; else all that show a contour")
-    ] = []
-    section: (
-        Annotated[int, msgspec.Meta(ge=1, le=10**6, description="the polar section, 1 for the first; else any")] | None
-    ) = None
-    files: Annotated[
-        list[str],
-        msgspec.Meta(
-            min_length=1, description="of which programs: patterns of names or paths as under [[programs]]; else all"
-        ),
-    ] = []
+    shape: Shape | None = None
+    drawing: str | None = None
+    sides: Annotated[int, msgspec.Meta(ge=3, le=360)] | None = None
+    count: Annotated[int, msgspec.Meta(ge=2, le=360)] | None = None
+    across_flats: Size = math.nan
+    across_corners: Size = math.nan
+    diameter: Size = math.nan
+    width: Size = math.nan
+    length: Size = math.nan
+    distance: Size = math.nan
+    corner_radius: Size = math.nan
+    chamfer: Size = math.nan
+    turned: Annotated[float, msgspec.Meta(ge=-360, le=360)] = math.nan
+    center: tuple[Coordinate, Coordinate] = (0.0, 0.0)
+    inside: bool = False
+    z: Coordinate = math.nan
+    tolerance: Size = math.nan
+    layers: list[str] = []
+    section: Annotated[int, msgspec.Meta(ge=1, le=10**6)] | None = None
+    files: Annotated[list[str], msgspec.Meta(min_length=1)] = []
 
     def __post_init__(self) -> None:
         if not self._fits_types():

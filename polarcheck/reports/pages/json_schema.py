@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import math
+import re
+from collections.abc import Mapping
 from typing import Any
 
 import msgspec
 
 from polarcheck.foundation.finding import SCHEMA, SILENCED_BY, VERDICTS, Report, Severity
-from polarcheck.program.machines.job import Job
+from polarcheck.program.machines.job import Job, Programs, Running, Stock, Tool
 from polarcheck.program.machines.machine import Machine, meanings
+from polarcheck.program.machines.part_keys import Part
 from polarcheck.rules.vocabulary import VOCABULARY, Kind
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
@@ -94,11 +97,31 @@ def _as_pair(value: Schema) -> None:
 
 def _job() -> Schema:
     content: Schema = without_nan(msgspec.json.schema(Job))
+    describe(content, {"Job": Job, "Programs": Programs, **OF_JOBS})
     for kind in ("Job", "Programs"):
         content["$defs"][kind]["properties"]["limits"] = {"$ref": "#/$defs/Limits"}
     limits = without_nan(msgspec.json.schema(Machine))["$defs"]["Limits"]
     content["$defs"]["Limits"] = {**limits, "required": []}
     return content
+
+
+#: Tables of a job file that a manifest has, too.
+OF_JOBS: dict[str, type] = {kind.__name__: kind for kind in (Tool, Stock, Running, Part)}
+
+
+def describe(content: Schema, kinds: Mapping[str, type]) -> None:
+    """Put into each table of the schema, by its name, what the docstring of a type says of its keys."""
+    for name, kind in kinds.items():
+        table = content["$defs"][name]
+        if name == kind.__name__:
+            table["description"] = re.split(r"\n+\w+: ", table["description"])[0]
+        for key, meaning in meanings(kind).items():
+            value = table["properties"][key]
+            optional = value.get("anyOf", ())
+            if {"type": "null"} in optional:
+                optional[0] = {"description": meaning, **optional[0]}
+            else:
+                table["properties"][key] = {"description": meaning, **value}
 
 
 def _machine() -> Schema:
