@@ -16,7 +16,7 @@ import msgspec
 
 from polarcheck.foundation.patterns import lazy_pattern
 from polarcheck.program.machines.axis_table import INCREMENTS, axis_of, is_rotary
-from polarcheck.program.machines.parameters import Origin
+from polarcheck.program.machines.parameters import Origin, value_of
 
 #: The rotary axis in the meanings of parameters, and the address of its incremental words (B-62754EN/01).
 _USUAL = "C"
@@ -42,11 +42,8 @@ class AxisNames(msgspec.Struct, frozen=True):
 
 def axis_names(merged: Mapping[str, Any]) -> AxisNames | None:
     """The axes of the merged profile; None where a name is missing or is not a text."""
-    polar = merged.get("polar")
-    if not isinstance(polar, Mapping):
-        return None
-    names = [polar.get(key) for key in _KEYS]
-    elsewhere = polar.get("virtual_axis_of_other_controls")
+    names = [value_of(merged, f"polar.{key}") for key in _KEYS]
+    elsewhere = value_of(merged, "polar.virtual_axis_of_other_controls")
     if not (_is_texts(names) and _is_texts(elsewhere)):
         return None
     return AxisNames((names[0], names[1]), (names[2], names[3]), list(elsewhere))
@@ -103,15 +100,13 @@ def _rotary_by(merged: Mapping[str, Any], written: set[str]) -> list[tuple[str, 
 
 def _axes(merged: Mapping[str, Any]) -> list[str]:
     """The names of all axes; empty where they are not texts."""
-    control = merged.get("control")
-    axes = control.get("axes") if isinstance(control, Mapping) else None
+    axes = value_of(merged, "control.axes")
     return axes if _is_texts(axes) else []
 
 
 def _named(merged: Mapping[str, Any]) -> Mapping[str, Any]:
     """The table of axes that are written with =; empty where it is not a table."""
-    control = merged.get("control")
-    named = control.get("named_axes") if isinstance(control, Mapping) else None
+    named = value_of(merged, "control.named_axes")
     return named if isinstance(named, Mapping) else {}
 
 

@@ -59,7 +59,7 @@ def apply(merged: dict[str, Any], table: Mapping[str, Any], profile: str, origin
             continue
         for key, value in _values(name, meaning, given[name], profile).items():
             refuse(key, profile)
-            if _is_given(table, key):
+            if value_of(table, key) is not None:
                 continue
             origins[key] = Origin(profile, f"parameter {name} = {given[name]}: {meaning.title}", parameter=name)
             if isinstance(value, str) and value.startswith("= "):
@@ -67,9 +67,7 @@ def apply(merged: dict[str, Any], table: Mapping[str, Any], profile: str, origin
             else:
                 _set(merged, key, value)
     for key, target in copies:
-        group, _, last = target.partition(".")
-        values = merged.get(group)
-        _set(merged, key, values.get(last) if isinstance(values, Mapping) else None)
+        _set(merged, key, value_of(merged, target))
 
 
 def _meanings(merged: Mapping[str, Any], profile: str) -> dict[str, Meaning]:
@@ -97,10 +95,11 @@ def _values(name: str, meaning: Meaning, given: Any, profile: str) -> Mapping[st
     return {meaning.key: given if meaning.factor == 1 else given * meaning.factor}
 
 
-def _is_given(table: Mapping[str, Any], key: str) -> bool:
+def value_of(merged: Mapping[str, Any], key: str) -> Any:
+    """The value of a key, as in `control.axes`; None where there is none, or no table for it."""
     group, _, last = key.partition(".")
-    values = table.get(group)
-    return isinstance(values, Mapping) and last in values
+    values = merged.get(group)
+    return values.get(last) if isinstance(values, Mapping) else None
 
 
 def _set(merged: dict[str, Any], key: str, value: Any) -> None:

@@ -145,7 +145,7 @@ def _load(name: str, over: list[Change], contents: dict[str, Any] | None) -> Pro
             inherited = {
                 group: dict(values) if isinstance(values, dict) else values for group, values in merged.items()
             }
-        before = {key: _value(merged, key) for key in MERGED}
+        before = {key: parameters.value_of(merged, key) for key in MERGED}
         axes = axis_names.axis_names(merged)
         _replace(merged, table.pop("replaces", []), title, origins)
         _merge(merged, table, title, origins, in_plain_form=title in ours)
@@ -306,16 +306,9 @@ def _taken(key: str, value: Any, inherited: Any, profile: str) -> Any:
         raise MachineError(f"{profile}: {key}: {error}") from None
 
 
-def _value(merged: Mapping[str, Any], key: str) -> Any:
-    """The value of a key; None where there is none, or no table for it."""
-    group, _, last = key.partition(".")
-    values = merged.get(group)
-    return values.get(last) if isinstance(values, Mapping) else None
-
-
 def _keep(merged: dict[str, Any], key: str, inherited: Any) -> None:
     """Have what a nearer profile gives of a table beside what is inherited of it: it names what differs or is new."""
-    value = _value(merged, key)
+    value = parameters.value_of(merged, key)
     if isinstance(value, Mapping) and isinstance(inherited, Mapping):
         group, _, last = key.partition(".")
         merged[group][last] = {**inherited, **value}
