@@ -5,17 +5,17 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, TypeVar
 
+from polarcheck.foundation.arrays import Columns
+
 Column = TypeVar("Column")
 
 
-class Lookups:
+class Lookups(Columns, frozen=True):
     """A table with columns that take an argument: each is computed once per argument."""
 
-    def __init__(self) -> None:
-        self._columns: dict[str, Any] = {}
-
     def _column(self, name: str, make: Callable[[], Column]) -> Column:
-        if name not in self._columns:
-            self._columns[name] = make()
-        column: Column = self._columns[name]
+        columns: dict[str, Any] = self.__dict__
+        if name not in columns:
+            columns[name] = make()
+        column: Column = columns[name]
         return column

@@ -18,7 +18,7 @@ import numpy as np
 from polarcheck.columns.path.moves import Moves
 from polarcheck.columns.path.tool_center import ToolCenter
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Floats, Mask, Rows, cached_property, is_among
+from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, cached_property, is_among
 from polarcheck.foundation.states import FeedMode, Motion
 from polarcheck.geometry import polar
 from polarcheck.geometry.tolerances import SHARE, ZERO
@@ -57,12 +57,11 @@ class Times(msgspec.Struct, frozen=True):
         return np.nan if self.unknown else self.known
 
 
-class Dynamics:
+class Dynamics(Columns, frozen=True):
     """Columns over the moves of the tool center (true_feed to x_acceleration) and over the rows of the trace."""
 
-    def __init__(self, trace: Trace, tool_center: ToolCenter) -> None:
-        self.trace = trace
-        self.tool_center = tool_center
+    trace: Trace
+    tool_center: ToolCenter
 
     # ---- the moves of the tool center ----
 

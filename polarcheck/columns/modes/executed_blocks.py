@@ -22,21 +22,14 @@ from polarcheck.program.reading.words import Text
 _NOT_WRITTEN = np.float64(np.nan)
 
 
-class ExecutedBlocks(Lookups):
+class ExecutedBlocks(Lookups, frozen=True):
     """
     The words and codes of the executed blocks of one file on one machine; each is looked up once for all that need it.
     """
 
-    def __init__(
-        self,
-        run: Run,
-        text: Text,
-        machine: Machine,
-    ) -> None:
-        super().__init__()
-        self.run = run
-        self.text = text
-        self.machine = machine
+    run: Run
+    text: Text
+    machine: Machine
 
     def __len__(self) -> int:
         return len(self.run)

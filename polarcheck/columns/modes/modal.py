@@ -21,21 +21,13 @@ from polarcheck.program.machines.machine import Machine
 _BEFORE = {"motion": Motion.NONE, "side": Side.OFF, "feed_mode": FeedMode.PER_MINUTE, "distance": Distance.ABSOLUTE}
 
 
-class ModalStates(Lookups):
+class ModalStates(Lookups, frozen=True):
     """The state of each modal group, of the spindles and cycles, and what the axis words of a block are for."""
 
-    def __init__(
-        self,
-        run: Run,
-        machine: Machine,
-        job: Job,
-        blocks: ExecutedBlocks,
-    ) -> None:
-        super().__init__()
-        self.run = run
-        self.machine = machine
-        self.job = job
-        self.blocks = blocks
+    run: Run
+    machine: Machine
+    job: Job
+    blocks: ExecutedBlocks
 
     @cached_property
     def _modal(self) -> tuple[tuple[str, ...], NDArray[np.uint8], States]:
@@ -75,8 +67,7 @@ class ModalStates(Lookups):
         if group == "motion" and unknown.any():
             values[unknown] = Motion.UNKNOWN
             written |= unknown
-        self._columns[f"sets {group}"] = written
-        self._columns[f"state {group}"] = state
+        self.__dict__.update({f"sets {group}": written, f"state {group}": state})
         return state.astype(np.int16), written
 
     def _at_power_on(self, group: str) -> States:

@@ -18,21 +18,13 @@ MEANT_IN_INCREMENTS = 1000.0
 _FARTHEST = 1e7
 
 
-class Coordinates(Lookups):
+class Coordinates(Lookups, frozen=True):
     """Units of the numbers of coordinates. Most columns have one element per executed word."""
 
-    def __init__(
-        self,
-        run: Run,
-        machine: Machine,
-        blocks: ExecutedBlocks,
-        modal: ModalStates,
-    ) -> None:
-        super().__init__()
-        self.run = run
-        self.machine = machine
-        self.blocks = blocks
-        self.modal = modal
+    run: Run
+    machine: Machine
+    blocks: ExecutedBlocks
+    modal: ModalStates
 
     @cached_property
     def is_coordinate(self) -> Mask:

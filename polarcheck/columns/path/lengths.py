@@ -27,31 +27,19 @@ def _scale(units: States) -> Floats:
     return computed(lambda units: np.where(units == Units.INCH, MM_PER_INCH, 1.0), units)
 
 
-class Lengths(Lookups):
+class Lengths(Lookups, frozen=True):
     """
     Words as lengths. The units in force and those written differ where a section refuses a code of units.
     """
 
-    def __init__(
-        self,
-        run: Run,
-        machine: Machine,
-        job: Job,
-        blocks: ExecutedBlocks,
-        modal: ModalStates,
-        coordinates: Coordinates,
-        axes: PlaneAxes,
-        mode: PolarMode,
-    ) -> None:
-        super().__init__()
-        self.run = run
-        self.machine = machine
-        self.job = job
-        self.blocks = blocks
-        self.modal = modal
-        self.coordinates = coordinates
-        self.axes = axes
-        self.mode = mode
+    run: Run
+    machine: Machine
+    job: Job
+    blocks: ExecutedBlocks
+    modal: ModalStates
+    coordinates: Coordinates
+    axes: PlaneAxes
+    mode: PolarMode
 
     @cached_property
     def units(self) -> States:
