@@ -1,4 +1,9 @@
-"""Reports: a module for each format with a function of the same name, from findings to str. Nothing here prints."""
+"""
+Reports: a module for each format, from findings to str. Nothing here prints.
+
+The module has a function of the name of the format, or `<format>_parts`, which gives the report file by file, or
+`<format>_pieces`, which yields it.
+"""
 
 from __future__ import annotations
 
@@ -93,8 +98,8 @@ def formats() -> list[str]:
 
 def render(form: str, report: Report, background: Background) -> str:
     """Return the report in a format."""
-    function = getattr(_module(form), form)
-    return str(function(report, background))
+    function = getattr(_module(form), form, None)
+    return str(function(report, background)) if function else "".join(pieces(form, report, background))
 
 
 def parts(form: str, background: Background) -> Parts | None:
@@ -105,8 +110,12 @@ def parts(form: str, background: Background) -> Parts | None:
 
 def pieces(form: str, report: Report, background: Background) -> Iterator[str]:
     """Yield the text of render piece by piece, if the format can do so."""
-    of_format = getattr(_module(form), f"{form}_pieces", None)
-    yield from of_format(report, background) if of_format else (render(form, report, background),)
+    if of_format := getattr(_module(form), f"{form}_pieces", None):
+        yield from of_format(report, background)
+    elif of_files := parts(form, background):
+        yield from of_each(of_files, report, background)
+    else:
+        yield str(getattr(_module(form), form)(report, background))
 
 
 def of_each(parts: Parts, report: Report, background: Background) -> Iterator[str]:

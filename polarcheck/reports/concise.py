@@ -6,26 +6,16 @@ from typing import TYPE_CHECKING
 
 from polarcheck.foundation.finding import UNREADABLE
 from polarcheck.program.reading.excerpt import head, visible, without_commands
-from polarcheck.reports import Background, Parts, of_each, painted
+from polarcheck.reports import Background, Parts, painted
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from polarcheck.foundation.finding import FileReport, Finding, Report, Silenced
-
-
-def concise(report: Report, background: Background | None = None) -> str:
-    """`path:line:column: severity: message [rule]`, nothing else."""
-    return "".join(concise_pieces(report, background or Background()))
-
-
-def concise_pieces(report: Report, background: Background) -> Iterator[str]:
-    """Yield the same text file by file."""
-    return of_each(concise_parts(background), report, background)
+    from polarcheck.foundation.finding import FileReport, Finding, Silenced
 
 
 def concise_parts(background: Background) -> Parts:
-    """The same, of files as they are finished."""
+    """`path:line:column: severity: message [rule]`, nothing else."""
 
     def of_file(file: FileReport, _: Mapping[int, str]) -> str:
         return "".join(text + "\n" for text in lines(file, background.silenced))
@@ -38,18 +28,15 @@ def lines(file: FileReport, silenced: bool, color: bool = False) -> Iterator[str
     if file.verdict == UNREADABLE:
         yield unreadable_line(file, color)
     yield from (line(file, finding, color) for finding in file.findings)
-    yield from (silenced_line(file, finding) for finding in file.silenced if silenced)
+    for finding in file.silenced if silenced else ():
+        # In a form that the patterns of editors do not match.
+        yield without_commands(f"{_location(file.path, finding)}: silenced: {why_silenced(finding)}")
 
 
 def unreadable_line(file: FileReport, color: bool = False) -> str:
     """Return the line of a file that could not be read or checked."""
     severity = painted("error", "error") if color else "error"
     return without_commands(f"{head(file.path)}:1:1: {severity}: {visible(f'{file.reason} [{UNREADABLE}]')}")
-
-
-def silenced_line(file: FileReport, finding: Silenced) -> str:
-    """Return the line of a silenced finding, in a form that the patterns of editors do not match."""
-    return without_commands(f"{_location(file.path, finding)}: silenced: {why_silenced(finding)}")
 
 
 def why_silenced(finding: Silenced) -> str:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 
-from polarcheck.reports import Background, Parts, of_each
+from polarcheck.reports import Background, Parts
 from polarcheck.reports.json import encoded, without_text
 
 if TYPE_CHECKING:
@@ -16,23 +16,13 @@ if TYPE_CHECKING:
 _LISTED = ("findings", "silenced")
 
 
-def jsonl(report: Report, background: Background | None = None) -> str:
+def jsonl_parts(background: Background) -> Parts:
     """
     Return for each file a line per finding, a line per silenced finding and a line for the file; last the summary.
 
     `type` says which: finding, silenced, file, summary. All other fields are those of `json`; `path` is in each line
     but the last.
     """
-    return "".join(jsonl_pieces(report, background or Background()))
-
-
-def jsonl_pieces(report: Report, background: Background) -> Iterator[str]:
-    """Yield the same text file by file."""
-    return of_each(jsonl_parts(background), report, background)
-
-
-def jsonl_parts(background: Background) -> Parts:
-    """Return how the report is written while files are being checked."""
 
     def of_file(file: FileReport, lines_shown: Mapping[int, str]) -> str:
         return "".join(encoded(line) + "\n" for line in lines(file))

@@ -69,18 +69,14 @@ class _Groups:
         return self._cached[id(settings)]
 
 
-def junit(report: Report, background: Background) -> str:
+def junit_pieces(report: Report, background: Background) -> Iterator[str]:
     """
-    Return a suite for each file, with a test for each group of rules that ran.
+    Yield a suite for each file, with a test for each group of rules that ran.
 
     A test fails by warnings and errors, and by notes if the check ends with 1 for them; it is skipped if something that
-    matters could not be judged, and passes else. A file that could not be read is an error.
+    matters could not be judged, and passes else. A file that could not be read is an error. Two passes over the files,
+    since the head holds the counts.
     """
-    return "".join(junit_pieces(report, background))
-
-
-def junit_pieces(report: Report, background: Background) -> Iterator[str]:
-    """Yield the same text file by file, in two passes over the files, since the head holds the counts."""
     ran = _Groups(background)
     outcomes = Counter(case.outcome for file in report.files for case in _cases(file, background, ran))
     errors = report.summary.unreadable + (report.interrupted is not UNSET)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from polarcheck.program.reading.excerpt import visible
 from polarcheck.program.reading.files import STANDARD_INPUT
-from polarcheck.reports import Background, Parts, of_each, painted, settings_lines
+from polarcheck.reports import Background, Parts, painted, settings_lines
 from polarcheck.reports.concise import lines
 from polarcheck.reports.text import summary
 
@@ -18,18 +18,8 @@ if TYPE_CHECKING:
 _FULL = {"fail": "What is wrong with one of them, in full", "unverified": "Why one of them is unverified"}
 
 
-def short(report: Report, background: Background) -> str:
-    """Return the lines of `concise`, the summary, and a command for a failing file and for an unverified one."""
-    return "".join(short_pieces(report, background))
-
-
-def short_pieces(report: Report, background: Background) -> Iterator[str]:
-    """Yield the same text file by file."""
-    return of_each(short_parts(background), report, background)
-
-
 def short_parts(background: Background) -> Parts:
-    """Return how the report is written while files are being checked."""
+    """Return the lines of `concise`, the summary, and a command for a failing file and for an unverified one."""
 
     def of_file(file: FileReport, _: Mapping[int, str]) -> str:
         return "".join(text + "\n" for text in lines(file, background.silenced, background.color))

@@ -64,13 +64,8 @@ class _Page(NamedTuple):
             yield self.paint("aside", " " * (_GUTTER + 2 * (index > 0)) + line)
 
 
-def text(report: Report, background: Background) -> str:
-    """Return findings with excerpts, then what was not evaluated, then the verdict of each file and a summary line."""
-    return "".join(text_pieces(report, background))
-
-
 def text_pieces(report: Report, background: Background) -> Iterator[str]:
-    """Yield the text of `text` file by file."""
+    """Yield findings with excerpts, then what was not evaluated, then the verdict of each file and a summary line."""
     return of_each(_parts(background, len(report.files) <= _LISTED), report, background)
 
 
