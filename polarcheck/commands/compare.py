@@ -21,7 +21,6 @@ if TYPE_CHECKING:
 
 #: What git gives a diff driver: path, then file, hash and mode of both sides.
 _GIT_ARGUMENTS = 7
-_LARGEST_TOLERANCE = 10.0
 
 
 class _Pair(NamedTuple):
@@ -32,21 +31,13 @@ class _Pair(NamedTuple):
     named: str = ""
 
 
-def _tolerance(ctx: click.Context, parameter: click.Parameter, value: float | None) -> float | None:
-    if value is not None and not 0 < value <= _LARGEST_TOLERANCE:
-        raise click.BadParameter(
-            f"{value:g}: expected a length above 0 and up to {_LARGEST_TOLERANCE:g}, such as 0.002"
-        )
-    return value
-
-
 @click.command(short_help="Compare two revisions of a program: metal, not text.")
 @click.argument("paths", nargs=-1, required=True, metavar="OLD NEW")
 @options.executing("programs")
 @option("--old-machine", metavar="NAME|FILE", help="The lathe of OLD, in place of --machine.")
 @option("--new-machine", metavar="NAME|FILE", help="The lathe of NEW, in place of --machine.")
 @click.option(
-    "--tolerance", "same_up_to", type=float, callback=_tolerance, metavar="LENGTH",
+    "--tolerance", "same_up_to", type=float, callback=options.length_up_to(10.0, 0.002), metavar="LENGTH",
     show_default="the least increment of the control",
     help="Up to this, lengths are the same, in the units of OLD.",
 )  # fmt: skip

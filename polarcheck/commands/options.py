@@ -157,10 +157,15 @@ debug = option(
 )
 
 
-def _tolerance(ctx: click.Context, parameter: click.Parameter, value: float | None) -> float | None:
-    if value is not None and not 0 < value <= _LARGEST_TOLERANCE:
-        raise click.BadParameter(f"{value:g}: expected a length above 0 and up to {_LARGEST_TOLERANCE:g}, such as 0.05")
-    return value
+def length_up_to(largest: float, example: float) -> Callable[..., float | None]:
+    """Return the callback of an option for a length."""
+
+    def checked(ctx: click.Context, parameter: click.Parameter, value: float | None) -> float | None:
+        if value is not None and not 0 < value <= largest:
+            raise click.BadParameter(f"{value:g}: expected a length above 0 and up to {largest:g}, such as {example:g}")
+        return value
+
+    return checked
 
 
 class _Seconds(click.FloatRange):
@@ -176,7 +181,6 @@ class _Seconds(click.FloatRange):
         return seconds
 
 
-_LARGEST_TOLERANCE = 100.0
 _FILE = {"type": click.Path(exists=True, dir_okay=False, path_type=Path)}
 #: What click is told of each kind of setting.
 _KINDS: dict[str, dict[str, Any]] = {
@@ -189,7 +193,7 @@ _KINDS: dict[str, dict[str, Any]] = {
     "number": {"type": click.IntRange(0)},
     "count": {"type": click.IntRange(1, 10**12)},
     "seconds": {"type": _Seconds(0, min_open=True)},
-    "length": {"type": float, "callback": _tolerance},
+    "length": {"type": float, "callback": length_up_to(100.0, 0.05)},
     "encoding": {"callback": _known_encoding},
     "switch": {"default": None},
 }

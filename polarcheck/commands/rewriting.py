@@ -77,20 +77,10 @@ def rewriting(*of_command: Decorator, machine: Decorator = options.machine) -> D
 _OF_FILES = (options.extensions, options.exclude, options.max_size, options.debug)
 
 
-def length(*names: str, default: float, largest: float, environment: bool = True, **attributes: Any) -> Decorator:
-    """
-    Return an option for a length in the units of the program.
-
-    default, largest: [mm]. environment: a variable can set it.
-    """
-
-    def checked(ctx: click.Context, parameter: click.Parameter, value: float | None) -> float | None:
-        if value is not None and not 0 < value <= largest:
-            raise click.BadParameter(f"{value:g}: expected a length above 0 and up to {largest:g}, such as {default:g}")
-        return value
-
-    make = option if environment else click.option
-    return make(*names, type=float, callback=checked, metavar="LENGTH", show_default=f"{default:g} mm", **attributes)
+def length(name: str, default: float, text: str) -> Decorator:
+    """Return an option for a length up to 1 in the units of the program. default: [mm]. text: of the help."""
+    checked = options.length_up_to(1.0, default)
+    return option(name, type=float, callback=checked, metavar="LENGTH", show_default=f"{default:g} mm", help=text)
 
 
 def _run(

@@ -19,10 +19,7 @@ if TYPE_CHECKING:
 
 @click.command(short_help="Write plain moves of X and C as polar sections of lines and arcs.")
 @rewriting(
-    length(
-        "--tolerance", default=0.01, largest=1.0, help="How far the path may be from the ends of the blocks, in the "
-        "units of the program.",
-    ),
+    length("--tolerance", 0.01, "How far the path may be from the ends of the blocks, in the units of the program."),
     option(
         "--feed", type=click.Choice(WITH_ROTARY), help="What F per minute is where X and C move together, if the "
         "machine does not say it.",

@@ -20,8 +20,8 @@ _FEEDS = ("inverse-time", "per-minute", "per-minute-c", "per-minute-diameter", "
 @click.command(short_help="Write polar sections as plain moves of X and C, without the mode.")
 @rewriting(
     length(
-        "--chord-error", default=0.005, largest=1.0,
-        help="How far the tool center may leave its path between two points, in the units of the program.",
+        "--chord-error", 0.005,
+        "How far the tool center may leave its path between two points, in the units of the program.",
     ),
     option(
         "--feed", type=click.Choice(_FEEDS),
