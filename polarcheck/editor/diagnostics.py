@@ -5,7 +5,7 @@ from __future__ import annotations
 from lsprotocol import types
 
 from polarcheck.editor.analysis import Analysis
-from polarcheck.foundation.finding import FileReport, Finding
+from polarcheck.foundation.finding import Finding
 from polarcheck.program.reading.excerpt import visible
 
 SOURCE = "polarcheck"
@@ -70,7 +70,7 @@ def _not_evaluated(analysis: Analysis) -> list[types.Diagnostic]:
             rules.setdefault(gap.reason, []).append(gap.rule)
     return [
         types.Diagnostic(
-            range=analysis.text.line_range(_first_section(report)),
+            range=analysis.text.line_range(min((section.line for section in report.polar_sections), default=1)),
             severity=types.DiagnosticSeverity.Information,
             code=NOT_EVALUATED,
             source=SOURCE,
@@ -78,7 +78,3 @@ def _not_evaluated(analysis: Analysis) -> list[types.Diagnostic]:
         )
         for reason, names in rules.items()
     ]
-
-
-def _first_section(report: FileReport) -> int:
-    return min((section.line for section in report.polar_sections), default=1)

@@ -59,7 +59,7 @@ def _run_all(state: State) -> None:
     called = _called(state)
     ran = False
     for program in sorted(programs, key=lambda program: not named.isdisjoint(program.keys)):
-        if not _was_run(state, program) and called.isdisjoint(program.keys):
+        if not state.visited[program.first : program.end].any() and called.isdisjoint(program.keys):
             used = len(state.used_files)
             _run_program(state, program)
             ran = True
@@ -74,10 +74,6 @@ def _run_all(state: State) -> None:
 def _called(state: State) -> AbstractSet[int | str]:
     """Numbers and names of the programs that run in their callers."""
     return state.called_beside | state.listing.named_by(state.used_files, by_number_only=True)
-
-
-def _was_run(state: State, program: Program) -> bool:
-    return bool(state.visited[program.first : program.end].any())
 
 
 def _run_program(state: State, program: Program) -> None:

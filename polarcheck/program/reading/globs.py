@@ -53,7 +53,7 @@ class Globs:
         inner = folder
         while inner not in self._of_folder:
             outer, name = os.path.split(inner)
-            if not name or self._is_around_base(inner):
+            if not name or f"{self._base.rstrip('/')}/".startswith(f"{folded(inner).rstrip('/')}/"):
                 self._of_folder[inner] = _NOTHING
                 break
             passed.append((outer, name, inner))
@@ -77,9 +77,6 @@ class Globs:
         if numbers and not is_folder:
             numbers -= self._folders_only
         return frozenset(numbers)
-
-    def _is_around_base(self, folder: str) -> bool:
-        return f"{self._base.rstrip('/')}/".startswith(f"{folded(folder).rstrip('/')}/")
 
     def _add(self, pattern: str, number: int) -> None:
         written = folded(pattern.replace("\\", "/"))
