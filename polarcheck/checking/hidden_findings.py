@@ -15,7 +15,7 @@ import numpy as np
 from polarcheck.checking.edits import applied, spans
 from polarcheck.checking.engine import Engine
 from polarcheck.foundation.finding import SEVERITIES, WARNING, Finding, Silenced, Undecided
-from polarcheck.foundation.states import Side
+from polarcheck.foundation.states import Motion, Side
 from polarcheck.program.execution.runs import runs
 from polarcheck.program.reading.source import read_source
 from polarcheck.rules.editing import Replace, in_place_of, is_plain, without, words_of
@@ -148,7 +148,7 @@ def _repairs(engine: Engine, finding: Finding) -> Iterator[list[Replace]]:
     words = words_of(run, row)
     at = [word for word in words if first <= int(run.words.start[word]) < last]
     doubts = {what for what, _ in engine.rules[finding.rule].doubts}
-    if "rapid" in doubts:
+    if "rapid" in doubts and trace.axes.motion[row] == Motion.RAPID:
         codes = np.flatnonzero(run.words.start == trace.modal.motion_word[row])
         yield from ([in_place_of(run, int(word), next(iter(machine.codes("line"))))] for word in codes[:1])
     sides = trace.blocks.code_indices(*machine.codes("compensation_left"), *machine.codes("compensation_right"))

@@ -127,6 +127,7 @@ FAULTS_OF_CONTOUR: Final = (
     "contour-at-two-depths",
     "contour-not-closed",
     "c-feed-above-limit",
+    "circle-center-doubled",
     "full-circle-by-radius",
     "incremental-contour-not-closed",
     "inside-arc-smaller-than-radius",

@@ -1,4 +1,4 @@
-"""Full circles whose I and J are twice as large, or half as large, as what the program round them says."""
+"""Full circles whose I and J are others than what the program round them says."""
 
 from __future__ import annotations
 
@@ -108,7 +108,27 @@ class FullCircles(Columns, frozen=True):
                     intended[int(self.row[index])] = Intended(share, point, -1)
                 elif abs(point - origin[index]) <= _SAME and len(likes):
                     intended[int(self.row[index])] = Intended(share, point, int(self.row[likes[0]]))
+            if int(self.row[index]) not in intended and (found := self._round_origin(index, is_round_origin)):
+                intended[int(self.row[index])] = found
         return intended
+
+    def _round_origin(self, index: int, is_round_origin: Mask) -> Intended | None:
+        """The circle round the point from which the tool comes, where other circles are, as far from such points."""
+        start, origin = complex(self._start[index]), complex(self._came_from[index])
+        center, call = complex(self.trace.path.center[self.row[index]]), self.trace.tools.tool_called[self.row]
+        reach, share = abs(origin - start), (origin - start) / (center - start)
+        as_far = np.abs(np.abs(self._came_from - self._start) - reach) <= _SAME
+        likes = np.flatnonzero(is_round_origin & as_far & (call == call[index]))
+        if not len(likes) or not abs(share.imag) * abs(center - start) <= _SAME:
+            return None
+        if len(likes) == 1:
+            from polarcheck.columns.words.slips import plain_number, slip_of  # few circles are odd
+
+            scale = float(self.trace.lengths.scale[self.row[index]])
+            slip = slip_of(plain_number(abs(center - start) / scale), reach / scale, _SAME)
+            if slip is None and abs(share + 1) * reach > _SAME:
+                return None
+        return Intended(share.real, origin, int(self.row[likes[0]]))
 
     @cached_property
     def is_misplaced(self) -> Mask:

@@ -87,7 +87,7 @@ def _of_axis(trace: Trace, loop: WrittenLoop, number: int) -> Iterator[Edit]:
                 yield Edit("missing", corner, (), text, "a word is missing", _OF_BLOCK, number, value)
             continue
         address, written = _parts(trace, word)
-        if not address:
+        if not address or np.isnan(axis.value[corner]):  # an edit has given the word to the other axis
             continue
         others = () if axis.is_step[corner] else (0.0, *sizes)
         neighbors = axis.value[max(corner - 1, 0) : corner + 2 : 2] if corner else axis.value[1:2]

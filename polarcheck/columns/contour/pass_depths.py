@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from polarcheck.columns.contour.passes import numbered
 from polarcheck.columns.metal.air_cuts import AirCuts, row_of_infeed
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, Table, cached_property, different, first_of_each
@@ -35,6 +36,11 @@ class Passes(Table, frozen=True):
     z: Floats
     contour: Rows
     shape: Rows
+
+    @property
+    def are_apart(self) -> bool:
+        """Each is of another contour or section."""
+        return len(different(self.contour)) == len(self)
 
 
 class PassDepths(Columns, frozen=True):
@@ -126,18 +132,41 @@ class PassDepths(Columns, frozen=True):
 
     @cached_property
     def _of_sections(self) -> list[tuple[int, float]]:
-        """Of one contour in several sections, in one pass each, the pass at another Z, if that is a slip of the pen."""
-        found = []
-        for passes in _groups(self.passes, self.passes.shape, _LEAST):
-            usual = float(np.median(passes.z))
-            off = np.flatnonzero(np.abs(passes.z - usual) > ROUNDING)
-            if len(off) != 1 or len(np.unique(passes.contour)) < len(passes):
-                continue
-            row, z = int(passes.row[off[0]]), float(passes.z[off[0]])
-            scale = float(self.trace.lengths.scale[row])
-            if _is_slip(z / scale, usual / scale):
-                found.append((row, usual))
-        return found
+        """
+        Of one contour in several sections, in one pass each, the pass at another Z, if that is a slip of the pen; and
+        of contours of one tool that are alike, each at a place of its own.
+        """
+        passes = self.passes
+        groups = [group for group in _groups(passes, passes.shape, _LEAST) if group.are_apart]
+        rows = [(group.row, group.z) for group in groups] + self._alike
+        found: dict[int, float] = {}
+        for row, z in rows:
+            usual = float(np.median(z))
+            off = np.flatnonzero(np.abs(z - usual) > ROUNDING)
+            if len(off) == 1:
+                scale = float(self.trace.lengths.scale[row[off[0]]])
+                if _is_slip(float(z[off[0]]) / scale, usual / scale):
+                    found.setdefault(int(row[off[0]]), usual)
+        return list(found.items())
+
+    @property
+    def _alike(self) -> list[tuple[Rows, Floats]]:
+        """First rows and Z of contours of one tool that have moves as long, each group of them at other places."""
+        trace, rows = self.trace, np.flatnonzero(self.air_cuts.walls)
+        begins = np.flatnonzero(np.diff(np.cumsum(trace.path.moves_z)[rows], prepend=-1))
+        if len(begins) < _LEAST or np.ptp(trace.path.z[rows]) <= ROUNDING:
+            return []
+        first, length = rows[begins], trace.path.length[rows]
+        sums = [np.add.reduceat(length**power, begins) for power in (0, 1, 2)]
+        places = np.add.reduceat(trace.path.end[rows], begins) / sums[0]
+        keys = [np.rint(total / _SAME / 10) for total in sums]
+        tool = trace.tools.tool_called[first].astype(np.float64)
+        like = numbered([*keys, tool])
+        at = numbered([np.rint(places.real), np.rint(places.imag)])
+        groups = [np.flatnonzero(like == which) for which in np.flatnonzero(np.bincount(like) >= _LEAST).tolist()]
+        return [
+            (first[group], trace.path.z[first[group]]) for group in groups if len(different(at[group])) == len(group)
+        ]
 
 
 def _groups(passes: Passes, key: Rows, fewest: int) -> list[Passes]:

@@ -71,9 +71,10 @@ class Macro(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     given: variable -> its value, as the job or the machine knows it
 
     Of a statement, none: it moves nothing and changes no path. speeds: the same, but axes and spindles may run
-    otherwise, which a comparison says. path: the path or the feed changes, and the positions stay. moves: nobody knows where the axes stand after it. words: the same, and the words behind it are its own. Then
-    there are cycle, which is as moves, but outside the mode the positions alone are open until they are programmed
-    again, and calls, which is the same of what it names, and nothing without a name.
+    otherwise, which a comparison says. path: the path or the feed changes, and the positions stay. moves: nobody knows
+    where the axes stand after it. words: the same, and the words behind it are its own. Then there are cycle, which is
+    as moves, but outside the mode the positions alone are open until they are programmed again, and calls, which is the
+    same of what it names, and nothing without a name.
     """
 
     language: Literal["custom-macro", "high-level", "user-task"]

@@ -29,7 +29,8 @@ def circle_center_doubled(full_circles: FullCircles) -> Mask:
     and the circle twice as large. It is reported where I and J of half, or twice, that size put the center on that of
     C, and the tool comes from inside the circle, or would go farther out than it has come from, or other circles are
     round the center of C; or to the point from which the tool comes and to which it goes back, as other circles of the
-    tool have it.
+    tool have it. Where two others are as far from such a point, or one is and a slip of the pen explains I or J, they
+    may be any others.
 
     Source: FANUC B-62764EN/01, p. 51 (I and J in the polar plane).
 
@@ -43,6 +44,25 @@ def circle_center_doubled(full_circles: FullCircles) -> Mask:
         G41 X34. F80
         G3 I-34.          (expect: circle-center-doubled)
         G1 G40 X26.
+        Z2.
+        G13.1
+
+    Bad, tool 1:radius=2.5:
+
+        T0101
+        G98 G0 X40. Z2. C0
+        G12.1
+        G1 X40. F500
+        Z-4. F40
+        G41 X52. F80
+        G3 I-6.
+        G1 G40 X40.
+        Z2. F500
+        X0 C20.
+        Z-4. F40
+        G41 X12. F80
+        G3 I-7.           (expect: circle-center-doubled)
+        G1 G40 X0.
         Z2.
         G13.1
 
