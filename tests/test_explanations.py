@@ -244,6 +244,8 @@ BARE = [*HEAD[:-1], "X46. C0", HEAD[-1], "X40. F200", *ROUNDED[1:], "X46. F1500"
             "cancel-on-arc",
             "G1 block after the arc",
         ),
+        # A block missing before the contour in the first of two passes.
+        (PASSES, ["G42 X40. F200"], ["X40. F200"], "cancel-without-start-up", "write G41 or G42"),
         # Of two passes the first is wrong, and nothing objects to it but that the second one differs.
         (POCKETS, ["G3 X-40. C4. R6."], ["G3 X-40. C2. R6."], "nearly-regular-contour", "C4."),
         (PASSES, ["G42 X40. F200"], ["G41 X40. F200"], "side-of-compensation-mirrored", "G42"),
@@ -272,3 +274,17 @@ def test_a_ramp_that_leaves_a_pocket_is_wrong_and_not_its_approach() -> None:
     assert [(one.rule, one.line) for one in found] == [
         ("start-up-sweeps-contour", slipped.split("X130.")[0].count("\n") + 1)
     ]
+
+
+def test_g91_that_g90_takes_back_is_missing() -> None:
+    of_system_b = [line.replace("U", "X").replace("H", "C") for line in STEPS[2:]]
+    sound = [*HEAD, "G42 X40. F200", "G91 C7.", *of_system_b, "G40 G90 X60. F1500", *TAIL[1:]]
+    text = "\n".join(sound).replace("G98", "G94") + "\n"
+    changes = {"control": {"g_code_system": "B"}}
+    of_sound, found = (
+        report_of(program, "fanuc-30i", "1:radius=2", changes=changes).findings
+        for program in (text, text.replace("G91 ", ""))
+    )
+    assert of_sound == []
+    assert ["with G91 it would" in one.message for one in found] == [True]
+    assert found[0].line == len(HEAD) + 2

@@ -118,6 +118,16 @@ def unneeded(trace: Trace, own: Rows) -> Iterator[list[CodeEdit]]:
             yield [CodeEdit(row, edit, without(trace.run, row, [word]))]
 
 
+def missing_steps(trace: Trace, own: Rows) -> Iterator[list[CodeEdit]]:
+    """G91 in the first block of a path behind which a G90 changes nothing."""
+    row, codes = int(own[0]), [*trace.machine.codes("incremental")]
+    rows = trace.run.row[trace.blocks.code_indices(*trace.machine.codes("absolute"))]
+    ends = (rows > row) & (rows <= own[-1] + 1)
+    if codes and ends.any() and not trace.modal.is_step("X")[row] and is_plain(trace.run, row):
+        edit = Edit("code", 0, (), codes[0], f"{codes[0]} is missing", 0.0)
+        yield [CodeEdit(row, edit, [_at_head(trace, row, codes[0])])]
+
+
 def unskipped(trace: Trace, own: Rows) -> Iterator[list[CodeEdit]]:
     """The sign of block skip taken away from a block that is skipped in the path, or beside it."""
     run, text = trace.run, trace.run.text

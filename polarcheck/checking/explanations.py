@@ -15,7 +15,7 @@ from typing import NamedTuple
 import msgspec
 import numpy as np
 
-from polarcheck.checking.code_edits import CodeEdit, exchanged, ramp_edits, unneeded, unskipped
+from polarcheck.checking.code_edits import CodeEdit, exchanged, missing_steps, ramp_edits, unneeded, unskipped
 from polarcheck.checking.edits import origins
 from polarcheck.checking.engine import Engine, with_following
 from polarcheck.checking.hidden_findings import REPORTS, edited, is_told, with_hidden
@@ -166,7 +166,9 @@ class _Search:
         One that removes all symptoms of the path comes before one that leaves some. own: the lines of the path. others:
         those of other paths with a symptom, where another one may come, as by a comparison of passes.
         """
-        of_code = chain(unskipped(self.trace, loop.row[1:]), unneeded(self.trace, loop.row[1:]))
+        of_code = chain.from_iterable(
+            search(self.trace, loop.row[1:]) for search in (unskipped, unneeded, missing_steps)
+        )
         whole = self._by_codes(of_code, own, others, 1)
         partly: list[_Explained] = []
         for likely in () if whole else likely_edits(self.trace, loop, _TRIALS, LEAST_IF_WHOLE):

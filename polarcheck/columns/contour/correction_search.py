@@ -33,7 +33,9 @@ _ODD_OF = 6
 _MOST_TRIALS, _ENDS, _GAPS = 80, 3, 3
 #: Edits that are looked at; how much less they must leave to chance, without and with symmetry; blocks of such a path.
 _MOST_EDITS, _LEAST_GAIN, _GAIN_ALONE, _FEWEST_BLOCKS = 16, 0.5, 3.8, 6
-#: The same with more symmetry, by which so many numbers more are fixed.
+#: By how much less a second one may explain, for both to be named [coordinates].
+_AS_LIKELY = 0.5
+#: The gain with more symmetry, by which so many numbers more are fixed.
 _GAIN_IN_SYMMETRY, _LEAST_FIXED = 2.4, 3
 
 
@@ -156,9 +158,13 @@ class _Search:
     # ---- one edit ----
 
     def _of_edits(self) -> Correction | None:
-        """The likeliest edit that makes the contour symmetric."""
+        """The likeliest edit that makes the contour symmetric; where one in another block is as likely, with that."""
         loop = written_loop(self.trace, self._row_of_points)
+        found: list[tuple[Likely, Correction, Symmetry]] = []
+        best = -1
         for likely in likely_edits(self.trace, loop, _MOST_EDITS, _LEAST_GAIN):
+            if best >= 0 and found[best][0].gain - likely.gain > _AS_LIKELY:
+                break
             edit = likely.edit
             outline = outlines_of(loop, [edit])
             point, turns, radius, to_center = (part[1] for part in outline)
@@ -167,13 +173,21 @@ class _Search:
             symmetry = edited.symmetry(point)
             if symmetry is None:
                 continue
-            correction = correction_by(likely, self._row(edit.corner))
+            found.append((likely, correction_by(likely, self._row(edit.corner)), symmetry))
             is_symmetric = self._is_better(symmetry, _Trial(edit.corner, -1, slip, point, edited))
-            if is_symmetric and edit.kind not in {"arc", "sense"}:
-                return correction._replace(becomes=_becomes(symmetry))
-            if self.likely is None and (is_symmetric or self._is_clear(likely, symmetry)):
-                self.likely = correction
-        return None
+            if best < 0 and is_symmetric and edit.kind not in {"arc", "sense"}:
+                best = len(found) - 1
+            elif self.likely is None and (is_symmetric or self._is_clear(likely, symmetry)):
+                self.likely = found[-1][1]
+        if best < 0:
+            return None
+        chosen, correction, symmetry = found[best]
+        for likely, other, another in found:
+            if likely.edit.corner != chosen.edit.corner and another.images >= symmetry.images:
+                line = int(self.trace.blocks.line[other.row])
+                correction = correction._replace(remedy=f"{correction.remedy}, or {other.remedy} in line {line},")
+                break
+        return correction._replace(becomes=_becomes(symmetry))
 
     def _is_clear(self, likely: Likely, symmetry: Symmetry) -> bool:
         """An edit closes the contour, or makes all its arcs tangent or the contour more symmetric, and is no chance."""

@@ -79,8 +79,8 @@ class MisplacedRamps(Columns, frozen=True):
         G40 with a move in the mode, nothing in force since G12.1 or the cancel before, and a contour cut in between.
 
         Many write G40 for safety. So it counts only where another witness stands beside it: the move leaves the contour
-        as a ramp does, or another section of the program compensates; and not where R is 0, or where the contour is a
-        size with R taken off it, and none as it is written.
+        as a ramp does, or as that of another pass, or another section of the program compensates; and not where R is 0,
+        or where the contour is a size with R taken off it, and none as it is written.
         """
         trace = self.trace
         rows = trace.compensation.writes_cancel & trace.path.on_plane & (trace.axes.motion == Motion.LINE)
@@ -103,6 +103,9 @@ class MisplacedRamps(Columns, frozen=True):
         if bool(np.any(trace.compensation.starts_up & (trace.mode.section != trace.mode.section[row]))):
             return True
         leaves_from, leaves_to = trace.path.start[row], trace.path.end[row]
+        apart = np.abs(trace.path.start - leaves_from) + np.abs(trace.path.end - leaves_to)
+        if bool(np.any(trace.compensation.cancels & (apart <= _SAME))):
+            return True
         before_end = np.append(moves.start[first : first + 1], moves.end[first : last - 1])
         closes = bool(np.any(np.abs(before_end - leaves_from) <= _SAME))
         # A contour that runs on past its start ends on its first wall.
