@@ -288,3 +288,34 @@ def test_g91_that_g90_takes_back_is_missing() -> None:
     assert of_sound == []
     assert ["with G91 it would" in one.message for one in found] == [True]
     assert found[0].line == len(HEAD) + 2
+
+
+SQUARE = ["G42 X37.5 C0 F200", "C18.75", "X-37.5 C18.75", "X-37.5 C-18.75", "X37.5 C-18.75", "C0"]
+#: Rounded corners of several radii, and no two sides of one length.
+FREE = [
+    *("G42 X27.919 C1.041 F120", "C5.466", "G3 X23.806 C8.962 R4.", "G1 X-1.119 C15.889", "G3 X-7.229 C15.396 R2.5"),
+    *("G1 X-34.57 C0.529", "G3 X-35.02 C-1.181 R1.5", "G1 X-13.758 C-21.522", "G3 X-7.501 C-22.066 R2."),
+    *("G1 X25.342 C-6.925", "G3 X27.919 C-3.984 R4.", "G1 C1.041"),
+]
+#: A hexagon of which one flat lies farther in.
+KEYED = ["G42 X39. C0 F200", "C11.258", "X0 C22.517", "X-35. C12.413", "C-12.413", "X0 C-22.517", "X39. C-11.258", "C0"]
+
+
+@looped(
+    ("contour", "right", "wrong", "words"),
+    [
+        (SQUARE, "X-37.5 C18.75", "X-37.5 C18.57", ["with C18.75 "]),
+        (FREE, "G3 X-35.02 C-1.181 R1.5", "G3 X-35.02 C-0.591 R1.5", ["with C-1.182 its arcs would be tangent"]),
+        # Either word would make it its own mirror image.
+        (KEYED, "X0 C22.517", "X0", ["with C-11.258", "or with C22.517 in line"]),
+    ],
+)
+def test_a_point_is_told_where_the_shape_shows_it(contour: list[str], right: str, wrong: str, words: list[str]) -> None:
+    lines = [*HEAD[:-2], "G1 X60. F1500", HEAD[-1], *contour, *TAIL]
+    sound, found = (
+        report_of("\n".join(text) + "\n", "fanuc-30i", "1:radius=2").findings
+        for text in (lines, [wrong if line == right else line for line in lines])
+    )
+    assert sound == []
+    assert len(found) == 1
+    assert all(part in found[0].message for part in words)

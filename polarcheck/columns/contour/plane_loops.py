@@ -11,7 +11,8 @@ from polarcheck.columns.trace import Trace
 from polarcheck.columns.words.last_digit import half_of_last_digit, same_place
 from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, column_at
 from polarcheck.foundation.states import Motion
-from polarcheck.geometry.plane import arc_sweep
+from polarcheck.geometry.plane import angle_between, arc_sweep
+from polarcheck.geometry.plane_path import PlanePath
 from polarcheck.geometry.regularity.rings import Ring, rings_in
 from polarcheck.geometry.regularity.symmetry import Symmetry, symmetry_of
 
@@ -24,6 +25,8 @@ _ALIKE, _AS_LONG = 0.25, 0.02
 _X_FACTORS = (1.0, 2.0, 0.5)
 #: Moves before a loop closes; arcs and ends of arcs that show by being tangent how X is meant; what is tangent [rad].
 _LEADS, _FEWEST_ARCS, _FEWEST_ENDS, _SMOOTH = 4, 2, 4, 0.02
+#: Ends of arcs that one wrong word turns.
+_TURNED = 3
 #: An arc of more is a full circle [rad].
 _FULL = 6.2
 
@@ -131,7 +134,21 @@ def loops_of(trace: Trace) -> list[PlaneLoop]:
         fits |= np.add.reduceat(_as_long_as_another(length, stretch), first, dtype=np.int64) >= _ALIKE * count
         if fits.all():
             break
+    if not fits.all():
+        fits |= _is_nearly_smooth(trace.path.moves_of(rows), stretch, first)
     return [*_different(trace, rows, first[fits], count[fits])]
+
+
+def _is_nearly_smooth(path: PlanePath, stretch: Rows, first: Rows) -> Mask:
+    """Stretches of which nearly all arcs are tangent to what is beside them: one word turns three of their ends."""
+    if not path.is_arc.any():
+        return np.zeros(len(first), bool)
+    at_arc = (path.is_arc[1:] | path.is_arc[:-1]) & (np.diff(stretch) == 0)
+    turn = np.abs(angle_between(path.arriving[:-1], path.leaving[1:]))
+    ends, corners = (
+        np.add.reduceat(np.append(False, which), first, dtype=np.int64) for which in (at_arc, at_arc & (turn > _SMOOTH))
+    )
+    return np.asarray((corners > 0) & (corners <= _TURNED) & (ends >= _FEWEST_ENDS + corners))
 
 
 def _as_long_as_another(length: Floats, stretch: Rows) -> Mask:
