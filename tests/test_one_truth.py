@@ -324,6 +324,32 @@ def test_what_changes_speeds_and_corners_unseen_is_not_the_same_metal(
     assert compared(tmp_path, "siemens-transmit", *texts).exit_code == code
 
 
+@looped(
+    ("old", "new", "code"),
+    [("VZOFZ=5", "VZOFZ=6", 2), ("VZOFZ=5", "", 2), ("VTOFZ[1]=VC1", "VTOFZ[1]=VC2", 2), ("G20 HP=1", "G20 HP=2", 1)],
+)
+def test_what_is_no_word_of_the_path_is_compared(old: str, new: str, code: int, tmp_path: Path) -> None:
+    texts = [program("okuma-osp", ("/G0 X60", f"/{words}/G0 X60" if words else "/G0 X60")) for words in (old, new)]
+    assert [report_of(text, "okuma-osp", CUTTER).verdict for text in texts] == ["pass", "pass"]
+    assert compared(tmp_path, "okuma-osp", *texts).exit_code == code
+
+
+@looped(("words", "verdict"), [("VC[VC500]=5", "unverified"), ("VC[2]=5", "pass"), ("VC[1+1]=VC500", "unverified")])
+def test_a_variable_by_its_index_is_the_variable(words: str, verdict: str) -> None:
+    text = program("okuma-osp", ("O1", f"O1/VC2=4/{words}"), ("Z-4", "Z=-VC2"))
+    assert report_of(text, "okuma-osp", CUTTER).verdict == verdict
+    depth = "Z-5.000" if verdict == "pass" else "Z not known"
+    assert depth in in_one_line(tables_of(text, "okuma-osp", CUTTER))
+
+
+@looped("control", ["fanuc-30i", "haas-lathe", "siemens-transmit"])
+def test_a_move_before_the_first_code_of_motion_is_a_move(control: str, tmp_path: Path) -> None:
+    place = "/T1 D1" if control == "siemens-transmit" else "/T0101"
+    sound, text = program(control), program(control, (place, f"/X70.{place}"))
+    assert compared(tmp_path, control, sound, text).exit_code == 1
+    assert certified(tmp_path, control, sound, text).exit_code == 1
+
+
 #: Moves of Z alone, and others in rapid traverse; and those that are the same.
 OF_Z = {
     "fanuc-30i": ("/Z2. F1000", "/Z-7. F1000", "/Z2. F1500", "/Z0. F1000/Z2."),

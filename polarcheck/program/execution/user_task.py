@@ -149,12 +149,12 @@ class _Block(SpokenBlock):
             self.leave(first, moves=True)
 
     def computed(self, address: str, first: Token) -> None:
-        """A word whose value is an expression, which comes next; address: empty where nothing of it is checked."""
+        """A word whose value is an expression, which comes next; address: with = where nothing of it is checked."""
         if not self.begins_value():
-            self.leave(first, moves=bool(address))
+            self.leave(first, moves=address[-1] != "=")
             return
         value = self.task_expression()
-        if value is not None and address:
+        if value is not None:
             if self.is_larger_arc and address == self.machine.arcs.radius_word:
                 value = replace(value, steps=(*value.steps, Step("NEGATE", 0.0, value.start, value.end)))
             self.words.append(Word(address, value, None, first.start, value.end))
@@ -163,7 +163,7 @@ class _Block(SpokenBlock):
         """SB=2000, a word of two letters, or DIA=20, a local variable; behind the =."""
         words = self.machine.macro.named_words
         if first.text in words:
-            self.computed(words[first.text], first)
+            self.computed(words[first.text] or f"{first.text}=", first)
         else:
             self.assign_task(named_variable(first.text, self.names), first, first)
 
@@ -177,11 +177,16 @@ class _Block(SpokenBlock):
         self.before.append(Statement(Kind.ASSIGN, first.start, self.last_end, target=target, value=value))
 
     def system_variable(self, first: Token) -> None:
-        """VZOFX=10.: a value of the control, as an origin or an offset, set by the program."""
-        if self.is_sign("["):
+        """VZOFX=10.: a value of the control, as an origin or an offset, set by the program; or VC[VC1]=5."""
+        index: Expression | None = None
+        if first.text == "VC" and self.is_sign("["):
+            index = self.expression()
+        elif self.is_sign("["):
             self.skip_brackets()
         if self.take_sign("="):
-            self.task_expression()
+            value = self.task_expression()
+            if index is not None:
+                self.before.append(Statement(Kind.ASSIGN, first.start, self.last_end, target=index, value=value))
         is_of_z = _OF_Z.fullmatch(first.text) is not None
         if _OF_POSITION.fullmatch(first.text):
             self.leave(first, moves=not is_of_z, matters=not is_of_z)

@@ -36,7 +36,7 @@ _ORDER = b'{"order":'
 #: The first line: the version of the format. Version 1 had neither this line nor the moves outside of sections, nor
 #: those of Z alone.
 _HEAD = '{"golden":2}\n'
-_MOTIONS = {Motion.RAPID: "rapid", Motion.LINE: "line", Motion.CW: "cw", Motion.CCW: "ccw"}
+_MOTIONS = {Motion.NONE: "move", Motion.RAPID: "rapid", Motion.LINE: "line", Motion.CW: "cw", Motion.CCW: "ccw"}
 _Pair = tuple[float | None, float | None]
 
 

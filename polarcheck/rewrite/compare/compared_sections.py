@@ -171,12 +171,14 @@ def outside(trace: Trace, steps: Sequence[Step], rows: Rows, terms: Terms) -> St
     terms: C is scaled so that the tolerance of angles counts as much as that of lengths.
     """
     rows = rows[trace.mode.section[rows] < 0]
-    at_work = np.isin(trace.axes.motion[rows], (Motion.RAPID, Motion.LINE, Motion.CW, Motion.CCW))
     left_out = np.isin(trace.blocks.line_in_file, list(terms.left_out))
     # Behind a block that is left out the tool comes from elsewhere to where the old program has it already.
     arrives = happened(left_out, trace.path.moves & ~left_out) & trace.blocks.has(*trace.machine.axis_words)
-    moving = at_work & (trace.path.moves | arrives)[rows] & ~trace.modal.in_cycle[rows] & trace.modal.uses_axes[rows]
-    moving &= ~special_rows(trace)[rows]
+    goes = np.isin(trace.axes.motion, (Motion.RAPID, Motion.LINE, Motion.CW, Motion.CCW))
+    goes &= trace.path.moves | arrives
+    # Before the first G0 or G1 axis words move as the control has it at power-on.
+    goes |= (trace.axes.motion == Motion.NONE) & (trace.path.moves_x | trace.path.moves_z | trace.path.moves_c)
+    moving = (goes & ~special_rows(trace))[rows]
     is_left_out = left_out[rows]
     row = rows[moving & ~is_left_out]
     starts, path = trace.blocks.starts, trace.path

@@ -11,6 +11,7 @@ import numpy as np
 from polarcheck.checking.check import check_runs
 from polarcheck.checking.not_evaluated import bounds_not_reported, unexecuted, unknown_value
 from polarcheck.columns.trace import Trace
+from polarcheck.columns.words.macro_faults import reason_of
 from polarcheck.columns.words.unknown_words import UnknownItem
 from polarcheck.foundation.finding import SEVERITIES, Finding, Severity
 from polarcheck.foundation.patterns import lazy_pattern
@@ -49,10 +50,10 @@ def incomparable(pair: tuple[Tables, Tables], terms: Terms) -> Iterator[NotCompa
         if any(count.any() for count in (written.stray_count, written.wrong_dash_count, written.letter_count)):
             reason = f"{name}: characters that the control cannot read: polarcheck check names them"
             yield NotCompared(reason, matters=not terms.is_kept)
-    statements = [_passed_over(trace) for trace in traces]
-    for name, of_side, of_rival in zip(("old", "new"), statements, statements[::-1], strict=True):
-        for text in list((of_side - of_rival) if not terms.is_kept else ())[:1]:
-            yield NotCompared(f"{name}: {text}: what it does to speeds and corners is not simulated")
+    if not terms.is_kept:
+        statements = [_passed_over(trace) for trace in traces]
+        for name, of_side, of_rival in zip(("old", "new"), statements, statements[::-1], strict=True):
+            yield from (NotCompared(f"{name}: {reason}") for reason in list(of_side - of_rival)[:1])
     # In one program alone it is left to the lathe what F means.
     is_open = [
         bool((tables["feeds"].mode_is_unknown & trace.path.moves_at_feed).any())
@@ -94,12 +95,18 @@ def findings_of(
 
 
 def _passed_over(trace: Trace) -> Counter[str]:
-    """Return the statements that a check passes over, although they change speeds and the way round corners."""
+    """
+    Return the reasons why a program may do more than is simulated, one for each block.
+
+    Also those without weight for a check, as Z of an origin, and statements that change speeds and corners alone.
+    """
     text, listed = trace.text, trace.machine.macro.statements.items()
     names = {name.partition("[")[0].rstrip("=") for name, effect in listed if effect == "speeds"}
     blocks = np.flatnonzero(text.blocks.is_macro).tolist() if names else []
     matches = (match for block in blocks for match in _STATEMENT.finditer(without_comments(text, block).upper()))
-    return Counter("".join(match[0].split()) for match in matches if match[1] in names)
+    statements = ("".join(match[0].split()) for match in matches if match[1] in names)
+    reasons = Counter(f"{statement}: what it does to speeds and corners is not simulated" for statement in statements)
+    return reasons + Counter(reason_of(remark, trace.machine) for remark in trace.run.remarks)
 
 
 def _of_machines(traces: tuple[Trace, Trace], terms: Terms) -> Iterator[NotCompared]:
