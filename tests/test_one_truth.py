@@ -342,6 +342,25 @@ def test_a_variable_by_its_index_is_the_variable(words: str, verdict: str) -> No
     assert depth in in_one_line(tables_of(text, "okuma-osp", CUTTER))
 
 
+@looped(
+    ("control", "place", "words"),
+    [
+        *itertools.product(("fanuc-30i", "haas-lathe"), ("G42", "G0 X60."), ("#[#500]=5.", "M99 P#500")),
+        ("doosan", "G42", "#[#500]=5."),
+        ("mazak-eia", "G42", "M99 P#500"),
+    ],
+)
+def test_a_variable_or_a_block_that_nobody_knows_leaves_all_unknown(
+    control: str, place: str, words: str, tmp_path: Path
+) -> None:
+    engage = [("G28 H0", "M200/G28 H0" if "mazak" in control else "M35/G28 H0")] * (control in ("doosan", "mazak-eia"))
+    text = program(control, *engage, (place, f"{words}/{place}"))
+    report = report_of(text, control, CUTTER)
+    assert (report.verdict, [finding.rule for finding in report.findings]) == ("unverified", [])
+    for old in (text.replace("500", "501"), program(control, *engage)):
+        assert compared(tmp_path, control, old, text).exit_code > 0
+
+
 @looped("control", ["fanuc-30i", "haas-lathe", "siemens-transmit"])
 def test_a_move_before_the_first_code_of_motion_is_a_move(control: str, tmp_path: Path) -> None:
     place = "/T1 D1" if control == "siemens-transmit" else "/T0101"

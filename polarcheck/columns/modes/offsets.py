@@ -286,13 +286,13 @@ class ToolOffsets(Columns, frozen=True):
 
     @cached_property
     def sets_unknown_offset(self) -> Mask:
-        """Sets R, nose type or X of an offset whose number is not known, above a polar section of its program."""
+        """Sets R, nose type or X of an offset whose number is not known, above a polar section or, by #, in one."""
         blocks = self.blocks
         number_is_unknown = blocks.has("P") & np.isnan(blocks.word("P"))
         data = blocks.listed("data_input") & number_is_unknown & blocks.has("R", "C", "Q", "X", "U")
         sets = data & (self.mode.section < 0)
         sets[[row for row, assigned in self.run.assigned.items() if assigned.variable == NO_VARIABLE]] = True
-        return np.asarray(sets & self.mode.comes_before_section) if sets.any() else sets
+        return np.asarray(sets & (self.mode.comes_before_section | self.mode.in_polar)) if sets.any() else sets
 
     def row_of_unknown_setting(self, number: int, row: int, key: str) -> int:
         """The last row, down to this one, that sets R or the nose type of an offset to what is not known; -1: none."""

@@ -172,7 +172,7 @@ def leave_program(state: State, statement: Statement | None, block: int = -1) ->
     if level.repeats > 1:
         level.repeats -= 1
         return level.program.first
-    target = return_target(state, statement)
+    target = return_target(state, statement, block)
     state.stack.pop()
     if level.is_macro:
         state.variables.leave()
@@ -199,10 +199,13 @@ def leave_program(state: State, statement: Statement | None, block: int = -1) ->
     return next_block
 
 
-def return_target(state: State, statement: Statement | None) -> int | None:
-    """The N number in P of an M99; None where there is none or it is unknown."""
+def return_target(state: State, statement: Statement | None, block: int) -> int | None:
+    """The N number in P of an M99; None where there is none, or, which is remarked, where it is unknown."""
     word = next((word for word in statement.words if word.address == "P"), None) if statement else None
     if word is None:
         return None
     value, _ = evaluate(word.value, state.variables, state.listing.arithmetic)
-    return None if value is None or value != value else round(value)
+    if value is not None and value != value:
+        state.add_remark("condition-unknown", block)
+        return None
+    return None if value is None else round(value)
