@@ -27,7 +27,20 @@ from polarcheck.rules.examples import Example, examples
 from polarcheck.rules.hit import Hit
 from polarcheck.rules.other_machine import OtherMachine
 from polarcheck.rules.rule import Hits, Rule, graded, load_all, rule, rule_files
-from polarcheck.rules.tables import ARC, COMMENT, OF_CAUSE, OF_TEXT, PART, SECTION, SPANS, TABLES, Tables
+from polarcheck.rules.tables import (
+    ARC,
+    BAR,
+    C_ACCELERATION,
+    COMMENT,
+    OF_CAUSE,
+    OF_TEXT,
+    PART,
+    SECTION,
+    SPANS,
+    TABLES,
+    X_ACCELERATION,
+    Tables,
+)
 
 RULES = load_all()
 #: Two sections, one begun by G112 and never left; a program of inch words before one in mm.
@@ -421,7 +434,9 @@ def test_each_rule_is_asked_once(monkeypatch: pytest.MonkeyPatch) -> None:
 
     monkeypatch.setattr(Rule, "hits", noted)
     section = "G98 G0 X60. C0\nG12.1\nG1 X40. F100\nG3 X20. C0 R30.\nG13.1\n"
-    report_of(f"(SECTIONS WITH AN ARC)\n{section}{section}", job={"part": [{"shape": "square", "across_flats": 40.0}]})
+    limits = {"limits": {"c_acceleration": 500.0, "x_acceleration": 50.0}}
+    job = {"part": [{"shape": "square", "across_flats": 40.0}], "stock": {"diameter": 60.0}}
+    report_of(f"(SECTIONS WITH AN ARC)\n{section}{section}#1=1/0\n", changes=limits, job=job)
     off = {name for name, rule in RULES.items() if rule.level(machine_of().severities) == "off"}
     of_allows = {name for name, rule in RULES.items() if rule.group == "silence"}
     assert sorted(order) == sorted(set(RULES) - off - of_allows)
@@ -541,41 +556,43 @@ def test_findings_beyond_the_limit_are_counted() -> None:
     assert not missing.matters
 
 
-#: What takes from the text of a program all that a table may need (Maker.only_with).
+#: What takes from the text of a program all that a rule may need (Rule.only_with).
 TAKEN_AWAY = {
     SECTION: (r"G0*1[23]\.1|G11[23]|G10[123]|G13[67]|TRANSMIT|TRAFOOF|G7[.]1|G268|G269", ""),
     ARC: (r"G0*[23](?![\d.])", "G1"),
     COMMENT: (r"\([^()\n]*\)|;[^\n]*", ""),
 }
-
-
-def needs(one: Rule, what: str) -> bool:
-    """A rule compares a table that holds nothing without a section, arc, comment or part."""
-    return any(what in TABLES[name].only_with for name in one.parameters if name in TABLES)
+#: The settings of an example that give what a rule may need.
+SETTINGS = {
+    PART: "job.part",
+    BAR: "job.stock",
+    C_ACCELERATION: "limits.c_acceleration",
+    X_ACCELERATION: "limits.x_acceleration",
+}
 
 
 def without(what: str, example: Example) -> Example:
-    """An example without its sections, arcs or comments, or without the part that its job asks for."""
-    if what == PART:
-        settings = tuple(setting for setting in example.settings if not setting.startswith("job.part"))
+    """An example without its sections, arcs or comments, or without the settings that give the part, bar or limit."""
+    if what in SETTINGS:
+        settings = tuple(setting for setting in example.settings if not setting.startswith(SETTINGS[what]))
         return msgspec.structs.replace(example, settings=settings)
     return msgspec.structs.replace(example, program=re.sub(*TAKEN_AWAY[what], example.program))
 
 
 @pytest.mark.ci
-@looped("what", [SECTION, ARC, COMMENT, PART], one_in=4)
+@looped("what", [*TAKEN_AWAY, *SETTINGS], one_in=4)
 def test_rules_that_are_not_run_would_find_nothing(what: str) -> None:
-    """Each example of each rule that is not run without a section, arc, comment or part, with that taken away."""
+    """Each example of each rule that is not run without a section, arc, bar and so on, with that taken away."""
     tried = set()
     for one in RULES.values():
-        if not needs(one, what):
+        if what not in one.only_with:
             continue
         for example in examples(one.page):
             found = tables_of_example(without(what, example))
-            if not found.may_hold(one.parameters):
+            if not found.has(one.only_with):
                 assert not one.hits(found).mask.any(), (one.name, example.program)
                 tried.add(one.name)
-    names = {one.name for one in RULES.values() if needs(one, what)}
+    names = {one.name for one in RULES.values() if what in one.only_with}
     assert len(tried) > 0.9 * len(names), names - tried
 
 

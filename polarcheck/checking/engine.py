@@ -93,7 +93,6 @@ class Engine:
         self._empty_hits: dict[int, Hits] = {}
         self._columns_seen: dict[str, int] = {}
         self._constant_masks: dict[tuple[int, bool], Mask] = {}
-        self._listed_by_rule: dict[str, Listed | None] = {}
         self.heads = program_heads(self.trace)
         self.rows_in_calls: dict[tuple[str, int, int], int] = {}
 
@@ -110,7 +109,7 @@ class Engine:
         return self._hits[rule.name]
 
     def _evaluated(self, rule: Rule) -> Hits:
-        if not self.tables.may_hold(rule.parameters):
+        if not self.tables.has(rule.only_with):
             return Hits(np.zeros(0, np.bool_))
         hits = rule.hits(self.tables)
         if self.trace.run.unknown_words and not rule.of_text and hits.mask.any():
@@ -179,11 +178,10 @@ class Engine:
 
     def _all_listed(self) -> dict[str, Listed] | None:
         """List the findings of each rule; None if a rule was given up, since findings may have followed from it."""
-        self._listed_by_rule.clear()
         listed = {}
         for rule in self.rules.values():
             try:
-                of_rule = self._listed(rule)
+                of_rule = self._list_findings(rule)
             except TooHardError as error:
                 self._give_up(rule, error)
                 return None
@@ -200,11 +198,6 @@ class Engine:
             return finding
         self.used |= self.allows.used(finding.rule, block_index)
         return allowed(finding, self.allows.reason(finding.rule, block))
-
-    def _listed(self, rule: Rule) -> Listed | None:
-        if rule.name not in self._listed_by_rule:
-            self._listed_by_rule[rule.name] = self._list_findings(rule)
-        return self._listed_by_rule[rule.name]
 
     def _list_findings(self, rule: Rule) -> Listed | None:
         hits = self.hits(rule)

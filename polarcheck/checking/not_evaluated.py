@@ -78,7 +78,7 @@ class Missing(NamedTuple):
 
 def unevaluated_by(tables: Tables, rule: Rule) -> list[NotEvaluated]:
     """Return the blocks that a rule could not evaluate, by reason."""
-    if (rule.companion("needs") or rule.name in _EXTRA_REASONS) and tables.may_hold(rule.parameters):
+    if (rule.companion("needs") or rule.name in _EXTRA_REASONS) and tables.has(rule.only_with):
         return [*merged_by_reason(unevaluated(tables, rule), tables["machine"])]
     return []
 

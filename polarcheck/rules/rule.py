@@ -22,7 +22,10 @@ from polarcheck.foundation.finding import WARNING as WARNING
 from polarcheck.foundation.finding import Severity as Severity
 from polarcheck.rules.causes import DOUBTFUL, RESTS_ON, UNIT, UNIT_OF, Doubt, subject_of
 from polarcheck.rules.documented import Documented
-from polarcheck.rules.tables import OF_CAUSE, OF_TEXT, SPANS, of_contours
+from polarcheck.rules.tables import ARC as ARC
+from polarcheck.rules.tables import C_ACCELERATION as C_ACCELERATION
+from polarcheck.rules.tables import OF_CAUSE, OF_TEXT, SPANS, of_contours, only_with
+from polarcheck.rules.tables import X_ACCELERATION as X_ACCELERATION
 from polarcheck.rules.tables import parameters as parameters_of
 
 if TYPE_CHECKING:
@@ -122,6 +125,8 @@ class Rule(Documented, frozen=True):
     and with a colon between them two whose distance counts (position:limit).
     is_symptom: the finding says what goes wrong, and not which word is: checking/explanations.py searches that.
     gouges: the tool cuts where it must not, so that the fault grows with the depth and F of its blocks.
+    only_with: what a program or its machine must have for the rule to find anything, beside what its tables need
+    (Maker.only_with); elsewhere it is not run.
     parameters: the names of the tables that the function compares.
     companion: returns a function in the file of the rule by its name, None for none. Their parameters name tables.
     `details(hit, ...)` returns what message and values name beside Hits.values and properties of Hit (rules/hit.py).
@@ -143,6 +148,7 @@ class Rule(Documented, frozen=True):
     is_symptom: bool = False
     gouges: bool = False
     group: str = ""
+    only_with: tuple[str, ...] = ()
     parameters: tuple[str, ...] = ()
     companion: Callable[[str], Any] = MappingProxyType[str, Any]({}).get
 
@@ -162,7 +168,14 @@ class Rule(Documented, frozen=True):
             raise RuleError(f"rule {name}: {subject!r}: expected one of {', '.join(RESTS_ON)}")
         companion = getattr(function, "__globals__").get  # noqa: B009 - mypy knows it of no Callable
         return msgspec.structs.replace(
-            self, name=name, function=function, group=group, subject=subject, parameters=parameters, companion=companion
+            self,
+            name=name,
+            function=function,
+            group=group,
+            subject=subject,
+            only_with=(*only_with(parameters), *self.only_with),
+            parameters=parameters,
+            companion=companion,
         )
 
     def __reduce__(self) -> tuple[Callable[[str], Rule], tuple[str]]:

@@ -27,8 +27,21 @@ if TYPE_CHECKING:
     from polarcheck.program.machines.job import Job
     from polarcheck.program.machines.machine import Machine
 
-#: What a program, or its job, must have for anything to be found in some tables.
-SECTION, SECTIONS, ARC, COMMENT, PART = "section", "sections", "arc", "comment", "part"
+#: What a program, its job or its machine must have for anything to be found in some tables, or by some rules.
+SECTION, SECTIONS, ARC, COMMENT, PART, BAR, FAULT = "section", "sections", "arc", "comment", "part", "bar", "fault"
+C_ACCELERATION, X_ACCELERATION = "limit of C acceleration", "limit of X acceleration"
+#: Whether a program has it.
+_HAS: dict[str, Callable[[Tables], bool]] = {
+    SECTION: lambda tables: len(tables["mode"].sections) > 0,
+    SECTIONS: lambda tables: len(tables["mode"].sections) > 1,
+    ARC: lambda tables: bool(((tables["axes"].motion == Motion.CW) | (tables["axes"].motion == Motion.CCW)).any()),
+    COMMENT: lambda tables: len(tables["text"].comments) > 0,
+    PART: lambda tables: len(tables["job"].part) > 0,
+    BAR: lambda tables: tables["bar"].known.source not in ("comment", "none"),
+    FAULT: lambda tables: len(tables["run"].faults) > 0,
+    C_ACCELERATION: lambda tables: tables["machine"].limits.c_acceleration >= 0,
+    X_ACCELERATION: lambda tables: tables["machine"].limits.x_acceleration >= 0,
+}
 
 
 class Maker:
@@ -71,7 +84,7 @@ TABLES = {
     "sections": Maker("polarcheck.columns.modes.mode:sections_of", SECTION),
     "written": Maker("polarcheck.columns.words.written:Written"),
     "dialect": Maker("polarcheck.columns.words.dialect:Dialect"),
-    "faults": Maker("polarcheck.columns.words.macro_faults:Faults"),
+    "faults": Maker("polarcheck.columns.words.macro_faults:Faults", FAULT),
     "unpointed": Maker("polarcheck.columns.words.unpointed:Unpointed"),
     "unknown_words": Maker("polarcheck.columns.words.unknown_words:UnknownWords"),
     "tool_comments": Maker("polarcheck.columns.words.tool_comments:ToolComments", COMMENT),
@@ -116,7 +129,7 @@ TABLES = {
     "milled": Maker("polarcheck.columns.metal.milled:Milled"),
     "workpiece": Maker("polarcheck.columns.metal.workpiece:Workpiece", SECTION),
     "strokes": Maker("polarcheck.columns.metal.strokes:Strokes", SECTION),
-    "approaches": Maker("polarcheck.columns.metal.approaches:Approaches", SECTION),
+    "approaches": Maker("polarcheck.columns.metal.approaches:Approaches", SECTION, BAR),
     "earlier_contours": Maker("polarcheck.columns.metal.earlier_contours:EarlierContours", SECTIONS),
     "air_cuts": Maker("polarcheck.columns.metal.air_cuts:AirCuts", SECTION),
     "rapid_contours": Maker("polarcheck.columns.contour.rapid_contours:RapidContours", SECTION),
@@ -215,6 +228,7 @@ class Tables(dict[str, Any]):
     def __init__(self, run: Run, machine: Machine, job: Job) -> None:
         given = {"run": run, "text": run.text, "words": run.text.words, "machine": machine, "job": job}
         super().__init__(given)
+        self._has: dict[str, bool] = {}
         addresses = [machine.address_number(word) for word in machine.arcs.made_corners]
         if addresses and any(number in run.words.address for number in addresses):
             from polarcheck.columns.path.made_corners import with_made_corners
@@ -246,23 +260,14 @@ class Tables(dict[str, Any]):
         """Add a table that was made elsewhere."""
         self[name] = table
 
-    def may_hold(self, names: tuple[str, ...]) -> bool:
-        """Return False where one of these tables holds nothing since the program has nothing that it is about."""
-        return all(self._has[what] for what in _only_with(names))
-
-    # `cached_property` and `is_among` of arrays would load NumPy, which `explain` and `rules` do without.
-    @functools.cached_property
-    def _has(self) -> dict[str, bool]:
-        """What a table may need (Maker.only_with), and whether the program has it."""
-        trace = self["trace"]
-        is_arc = (trace.axes.motion == Motion.CW) | (trace.axes.motion == Motion.CCW)
-        return {
-            SECTION: len(trace.mode.sections) > 0,
-            SECTIONS: len(trace.mode.sections) > 1,
-            ARC: bool(is_arc.any()),
-            COMMENT: len(trace.text.comments) > 0,
-            PART: len(trace.job.part) > 0,
-        }
+    def has(self, needed: Iterable[str]) -> bool:
+        """Return True if the program has all that a rule needs (Rule.only_with)."""
+        for what in needed:
+            if what not in self._has:
+                self._has[what] = _HAS[what](self)
+            if not self._has[what]:
+                return False
+        return True
 
     def computed(self) -> Iterator[tuple[str, Any]]:
         """The tables computed so far, by name."""
@@ -295,10 +300,9 @@ def made_from(name: str) -> frozenset[str]:
     return frozenset({name}).union(*map(made_from, sources))
 
 
-@functools.cache
-def _only_with(names: tuple[str, ...]) -> tuple[str, ...]:
+def only_with(names: Iterable[str]) -> tuple[str, ...]:
     """Return what a program needs so that each of these tables holds something."""
-    return tuple({what for name in names if name in TABLES for what in TABLES[name].only_with})
+    return tuple(dict.fromkeys(what for name in names if name in TABLES for what in TABLES[name].only_with))
 
 
 def of_contours(names: Iterable[str]) -> bool:

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from polarcheck.rules.rule import ERROR, rule
+from polarcheck.rules.rule import ARC, ERROR, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.path.compensation import CutterCompensation
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     doubts=(("metal", "block"), ("metal", "X before")),
     follows={"compensation": ("compensation-without-contour",)},
     is_symptom=True,
+    only_with=(ARC,),
 )
 def cancel_on_arc(path: ProgrammedPath, compensation: CutterCompensation) -> Mask:
     """

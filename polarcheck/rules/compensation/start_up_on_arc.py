@@ -2,7 +2,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from polarcheck.rules.rule import ERROR, rule
+from polarcheck.rules.rule import ARC, ERROR, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.path.compensation import CutterCompensation
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     subject="move",
     doubts=(("metal", "block"),),
     is_symptom=True,
+    only_with=(ARC,),
 )
 def start_up_on_arc(path: ProgrammedPath, compensation: CutterCompensation) -> Mask:
     """

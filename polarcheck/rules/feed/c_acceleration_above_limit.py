@@ -2,7 +2,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from polarcheck.rules.rule import WARNING, Hits, rule
+from polarcheck.rules.rule import C_ACCELERATION, WARNING, Hits, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.feed.feedrate import Feedrate
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     at=("F",),
     once="feed",
     subject="rate",
+    only_with=(C_ACCELERATION,),
 )
 def c_acceleration_above_limit(feedrate: Feedrate, center: Center, feeds: Feeds) -> Hits:
     """

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from polarcheck.rules.rule import WARNING, Hits, rule
+from polarcheck.rules.rule import WARNING, X_ACCELERATION, Hits, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.feed.feedrate import Feedrate
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     once="feed",
     follows={"feed": ("c-acceleration-above-limit",)},
     subject="rate",
+    only_with=(X_ACCELERATION,),
 )
 def x_acceleration_above_limit(feedrate: Feedrate, center: Center, feeds: Feeds) -> Hits:
     """

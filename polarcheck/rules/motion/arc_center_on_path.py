@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.rules.causes import END_IN_DOUBT
-from polarcheck.rules.rule import ERROR, rule
+from polarcheck.rules.rule import ARC, ERROR, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.path.arcs import Arcs
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     at=("I", "J"),
     doubts=END_IN_DOUBT,
     is_symptom=True,
+    only_with=(ARC,),
 )
 def arc_center_on_path(arcs: Arcs) -> Mask:
     """

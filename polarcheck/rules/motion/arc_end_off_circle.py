@@ -3,7 +3,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from polarcheck.rules.causes import END_IN_DOUBT
-from polarcheck.rules.rule import ERROR, Hits, rule
+from polarcheck.rules.rule import ARC, ERROR, Hits, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.path.arcs import Arcs
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     doubts=END_IN_DOUBT,
     follows={"block": ("arc-center-on-path",), "misfitting arcs": ("arc-radius-too-small",)},
     is_symptom=True,
+    only_with=(ARC,),
 )
 def arc_end_off_circle(arcs: Arcs, machine: Machine) -> Hits:
     """

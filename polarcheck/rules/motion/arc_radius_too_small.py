@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 from polarcheck.foundation.states import MM_PER_INCH, Units
 from polarcheck.rules.causes import END_IN_DOUBT
-from polarcheck.rules.rule import ERROR, rule
+from polarcheck.rules.rule import ARC, ERROR, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.path.arcs import Arcs
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     once="misfitting arcs",
     doubts=END_IN_DOUBT,
     is_symptom=True,
+    only_with=(ARC,),
 )
 def arc_radius_too_small(arcs: Arcs, machine: Machine) -> Mask:
     """

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from polarcheck.rules.rule import WARNING, Hits, graded, rule
+from polarcheck.rules.rule import ARC, WARNING, Hits, graded, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.path.arcs import Arcs
@@ -23,6 +23,7 @@ LAST_DIGIT = 0.1
     at=("X", "U", "C", "H", "I", "J", "R"),
     subject="move",
     follows={"block": ("arc-sense-reversed",)},
+    only_with=(ARC,),
 )
 def arc_sweep_above_limit(arcs: Arcs, machine: Machine) -> Hits:
     """

@@ -3,7 +3,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from polarcheck.rules.causes import END_IN_DOUBT
-from polarcheck.rules.rule import ERROR, rule
+from polarcheck.rules.rule import ARC, ERROR, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.path.arcs import Arcs
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     doubts=END_IN_DOUBT,
     follows={"block": ("arc-off-polar-plane",)},
     is_symptom=True,
+    only_with=(ARC,),
 )
 def arc_without_center(path: ProgrammedPath, arcs: Arcs) -> Mask:
     """

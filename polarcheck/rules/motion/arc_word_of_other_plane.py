@@ -3,7 +3,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from polarcheck.rules.causes import NO_SUCH_ARC
-from polarcheck.rules.rule import ERROR, Hits, rule
+from polarcheck.rules.rule import ARC, ERROR, Hits, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.path.arcs import Arcs
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     subject="",
     doubts=NO_SUCH_ARC,
     follows={"block": ("arc-off-polar-plane",), "section": ("linear-axis-never-programmed",)},
+    only_with=(ARC,),
 )
 def arc_word_of_other_plane(axes: PlaneAxes, path: ProgrammedPath, arcs: Arcs) -> Hits:
     """
