@@ -9,8 +9,7 @@ from __future__ import annotations
 
 import re
 
-import numpy as np
-
+from polarcheck.foundation.arrays import stretch
 from polarcheck.program.reading.words import Text
 from polarcheck.rules.places import Place
 from polarcheck.rules.rule import Rule
@@ -43,7 +42,7 @@ def _words(text: Text, element: Place) -> str:
 def _without_comments(text: Text, start: int, end: int) -> str:
     comments = text.comments
     pieces, copied = [], start
-    for number in range(*np.searchsorted(comments.start, [start, end]).tolist()):
+    for number in range(*stretch(comments.start, start, end)):
         pieces.append(text.source.excerpt(copied, max(int(comments.start[number]), copied)))
         copied = max(copied, int(comments.end[number]))
     return "".join([*pieces, text.source.excerpt(copied, end) if copied < end else ""])

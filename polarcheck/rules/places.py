@@ -258,10 +258,9 @@ def _is_named(trace: Trace, index: int, names: tuple[str, ...]) -> bool:
         names = tuple(name for name in names if name not in "CH")
     if address in names or (address.islower() and f",{address.upper()}" in names):
         return True
-    if address not in "GM":
-        return False
-    code = int(code_numbers(trace.run.words.value[index : index + 1])[0])
-    return code >= 0 and any(code in _codes(trace, name) for name in names if name.islower())
+    lists = [name for name in names if name.islower()] if address in "GM" else []
+    code = int(code_numbers(trace.run.words.value[index : index + 1])[0]) if lists else -1
+    return code >= 0 and any(code in _codes(trace, name) for name in lists)
 
 
 def _codes(trace: Trace, name: str) -> list[int]:

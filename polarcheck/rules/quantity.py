@@ -9,6 +9,8 @@ import numpy as np
 from polarcheck.columns.path.lengths import Lengths
 from polarcheck.foundation.states import MM_PER_INCH, Units
 
+#: A member of an enum is looked up anew for each comparison with a number of NumPy.
+_INCH = int(Units.INCH)
 #: Digits behind the point that a program writes, in mm and in inch.
 _DIGITS = {"length": (3, 4), "diameter": (3, 4), "feed": (3, 4), "whole": (0, 0)}
 #: A nanometer, and as much of a degree.
@@ -109,5 +111,5 @@ def in_row(value: Any, lengths: Lengths, row: int) -> Quantity:
     """A value [mm, mm/min, radius] as the program of a row of the trace would write it; row -1: in mm and diameters."""
     if row < 0:
         return Quantity(value, False, True)
-    inch, feed_inch = (bool(units[row] == Units.INCH) for units in (lengths.units, lengths.feed_units))
+    inch, feed_inch = (int(units[row]) == _INCH for units in (lengths.units, lengths.feed_units))
     return Quantity(value, inch, bool(lengths.x_factor[row] < 1), feed_inch)

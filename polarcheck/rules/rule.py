@@ -222,8 +222,13 @@ class Rule(Documented, frozen=True):
     @property
     def source(self) -> str:
         """Return the source that the documentation of the rule cites."""
-        match = re.search(r"^Source: (.*?)(?:\n\n|\Z)", self.page, re.MULTILINE | re.DOTALL)
-        return " ".join(match[1].split()) if match else ""
+        return _source(self.page)
+
+
+@functools.cache
+def _source(page: str) -> str:
+    match = re.search(r"^Source: (.*?)(?:\n\n|\Z)", page, re.MULTILINE | re.DOTALL)
+    return " ".join(match[1].split()) if match else ""
 
 
 #: Decorates a function as a rule, with attributes of Rule. Its parameters name the tables that it compares.
