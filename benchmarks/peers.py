@@ -2,12 +2,13 @@
 polarcheck beside other readers of NC programs: time and memory of whole processes, and what each of them finds.
 
     python benchmarks/peers.py --rs274 FILE --python FILE --nctab FILE --ncplot7py FOLDER -o docs/benchmarks.md
-        [--before FILE] [--note WORDS]
+        [--rounds NUMBER] [--before FILE] [--note WORDS]
 
 A peer is found by its option, by RS274, PEERS_PYTHON, NCTAB or NCPLOT7PY in the environment, or on the search path; one
 that is not there is left out, which the page says. All are run in turn, round by round, so that they see the same
 machine. --python: one that has nc-gcode-interpreter and pygcode. --ncplot7py: the folder of its source.
 --before: a Python with an older polarcheck, which is measured beside this one.
+Standard error names the part of the page that is measured, and how long that took.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ import shutil
 import statistics
 import sys
 import tempfile
+import time
 from collections.abc import Sequence
 from importlib.metadata import version
 from pathlib import Path
@@ -40,7 +42,7 @@ CHECK = (*CHECK_FILES, "--jobs", "1")
 WITHOUT, WITH = "polarcheck", "polarcheck, with compensation and overcut"
 BEFORE = ", before"
 CUTTERS = range(4, 13)
-SIZES = (1_000, 10_000, 50_000, 200_000, 1_000_000, 5_000_000)
+SIZES = (1_000, 10_000, 50_000, 200_000, 500_000, 1_000_000)
 #: Sizes from here on take seconds, which do not need so many rounds.
 LARGE = 1_000_000
 #: Of the files that are checked by several processes.
@@ -52,6 +54,7 @@ _LIMITS = 120, 8
 _REGEX = "a bare regex"
 #: Copies of a sample program, and blocks of the program that is typed.
 _SAMPLES, _KEY_BLOCKS = 600, 500
+_PEERS = ("LinuxCNC rs274", "nc-gcode-interpreter", "pygcode", "nctab", "ncplot7py")
 #: Lets a command use the results of earlier runs, which the others do not.
 _WITH_CACHE = ("env", "-u", "POLARCHECK_NO_CACHE")
 
@@ -404,8 +407,7 @@ def _processor() -> str:
 def page(asked: argparse.Namespace, parts: dict[str, str]) -> str:
     """The page of Markdown."""
     machine = f"{os.cpu_count()} cores of {_processor()}, CPython {platform.python_version()}, NumPy {version('numpy')}"
-    names = ("LinuxCNC rs274", "nc-gcode-interpreter", "pygcode", "nctab", "ncplot7py")
-    missing = [name for name in names if name not in parts["Whole processes"]]
+    missing = [name for name in _PEERS if name not in parts["Whole processes"]]
     left_out = f" Not installed there, and left out: {', '.join(missing)}." if missing else ""
     about = {
         "Whole processes": f"""\
@@ -420,7 +422,7 @@ The program of `benchmarks/generate.py` with {min(_BLOCKS_OF_COMMANDS, asked.blo
         "Long lines": "A file that is one line of one letter.",
         "Contours": """\
 Those of `benchmarks/contour_costs.py`, which says what is hard about each; without the start of the process.""",
-        "Growth": "Without a cutter; from 1,000,000 blocks on one run each.",
+        "Growth": f"Without a cutter; from {LARGE:,} blocks on one run each.",
         "What is found": f"""\
 {len(FAULTS)} programs with one fault each (`benchmarks/peer_faults.py`), and the sound one. A reader names a fault
 where what it says, and does not say of the sound program, holds the words that belong to the fault: a generous
@@ -451,6 +453,20 @@ What they write goes to /dev/null, and polarcheck keeps no results of earlier ru
 {ONE_SLIP}"""
 
 
+#: What the page shows, in its order.
+PARTS = {
+    "Whole processes": speed,
+    "Small files": small,
+    "Many files": many,
+    "Other commands": commands,
+    "Long lines": long_line,
+    "Contours": contours,
+    "Growth": growth,
+    "What is found": findings,
+    "Where the time goes": both_stages,
+}
+
+
 def main() -> None:
     """Measure, and write the page."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -465,7 +481,7 @@ def main() -> None:
         help="what else the page says of its figures",
     )
     parser.add_argument("--blocks", type=int, default=200_000)
-    parser.add_argument("--rounds", type=int, default=7)
+    parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("--quick", action="store_true", help="nothing larger than --blocks")
     parser.add_argument("-o", "--output", type=Path, required=True)
     asked = parser.parse_args()
@@ -473,17 +489,12 @@ def main() -> None:
         run([*command, str(ROOT / "sample_programs" / "hexagon.nc")])  # compiles what is not yet
     with tempfile.TemporaryDirectory() as made:
         folder = Path(made)
-        parts = {
-            "Whole processes": speed(asked, folder),
-            "Small files": small(asked, folder),
-            "Many files": many(asked, folder),
-            "Other commands": commands(asked, folder),
-            "Long lines": long_line(asked, folder),
-            "Contours": contours(asked, folder),
-            "Growth": growth(asked, folder),
-            "What is found": findings(asked, folder),
-            "Where the time goes": both_stages(asked, folder),
-        }
+        parts = {}
+        for title, measure in PARTS.items():
+            print(f"{title} ...", end=" ", file=sys.stderr, flush=True)
+            began = time.perf_counter()
+            parts[title] = measure(asked, folder)
+            print(f"{time.perf_counter() - began:.0f} s", file=sys.stderr)
     asked.output.write_text(page(asked, parts), "utf-8")
 
 
