@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from typing import Any
 
 import msgspec
 import numpy as np
@@ -134,10 +135,7 @@ def of_row(tables: Tables, index: int) -> Place:
 
 def of_word(tables: Tables, index: int) -> Place:
     """A word of the file."""
-    trace: Trace = tables["trace"]
-    table = trace.text.words
-    block = int(table.block[index])
-    return Place(int(table.start[index]), int(table.end[index]), block, int(trace.blocks.row_of_block[block]), index)
+    return _placed(tables, tables["trace"].text.words, index)
 
 
 def of_section(tables: Tables, index: int) -> Place:
@@ -172,27 +170,30 @@ def of_fault(tables: Tables, index: int) -> Place:
 
 def of_allow(tables: Tables, index: int) -> Place:
     """An allow comment."""
-    trace, allows = tables["trace"], tables["allows"]
-    block = int(allows.block[index])
-    return Place(int(allows.start[index]), int(allows.end[index]), block, int(trace.blocks.row_of_block[block]), index)
+    return _placed(tables, tables["allows"], index)
+
+
+def _placed(tables: Tables, spans: Any, index: int) -> Place:
+    """An element of a table with the columns block, start and end."""
+    block = int(spans.block[index])
+    row = int(tables["trace"].blocks.row_of_block[block])
+    return Place(int(spans.start[index]), int(spans.end[index]), block, row, index)
+
+
+def of_outside(tables: Tables, index: int) -> Place:
+    """What stands behind the % that ends the program, which is no part of the text; in its first block."""
+    trace: Trace = tables["trace"]
+    spans, blocks = trace.text.outside, trace.text.blocks
+    start, end = int(spans.start[index]), int(spans.end[index])
+    mark = _MARK.match(trace.text.source.excerpt(start, end))
+    start = min(start + (mark.end() if mark else 0), end - 1)
+    block = int(np.searchsorted(blocks.start, start, side="right")) - 1
+    end = min(end, max(int(blocks.end[block]), start + 1))
+    return Place(start, end, block, int(trace.blocks.row_of_block[block]), index)
 
 
 def _of_span(name: str) -> Callable[[Tables, int], Place]:
-    def place(tables: Tables, index: int) -> Place:
-        trace: Trace = tables["trace"]
-        spans = getattr(trace.text, name)
-        block = int(spans.block[index])
-        start = int(spans.start[index])
-        end = int(spans.end[index])
-        if name == "outside":
-            # It begins behind the % that ends the program, which is no part of the text.
-            mark = _MARK.match(trace.text.source.excerpt(start, end))
-            start = min(start + (mark.end() if mark else 0), end - 1)
-            block = int(np.searchsorted(trace.text.blocks.start, start, side="right")) - 1
-            end = min(end, max(int(trace.text.blocks.end[block]), start + 1))
-        return Place(start, end, block, int(trace.blocks.row_of_block[block]), index)
-
-    return place
+    return lambda tables, index: _placed(tables, getattr(tables["trace"].text, name), index)
 
 
 PLACES: dict[str, Callable[[Tables, int], Place]] = {
@@ -203,7 +204,8 @@ PLACES: dict[str, Callable[[Tables, int], Place]] = {
     "faults": of_fault,
     "files": of_file,
     "allows": of_allow,
-    **{name: _of_span(name) for name in ("comments", "strays", "foreign", "prose", "dots", "outside")},
+    "outside": of_outside,
+    **{name: _of_span(name) for name in ("comments", "strays", "foreign", "prose", "dots")},
 }
 
 

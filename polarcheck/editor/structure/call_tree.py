@@ -50,8 +50,9 @@ def outgoing(document: Document, item: Any, workspace: Workspace) -> list[types.
     owner = _owner(uses, document, item)
     if owner is None:
         return []
-    calls = [mention for mention in owner.all if mention.kind is Kind.PROGRAM and mention.role is Role.REFERS]
-    uses_called = [Use(called, mention) for mention in calls for called in uses.resolved(owner, called_name(mention))]
+    uses_called = [
+        Use(called, mention) for mention in owner.calls for called in uses.resolved(owner, called_name(mention))
+    ]
     return [
         types.CallHierarchyOutgoingCall(_item(uses_of[0].owner), [_range(owner, use.mention) for use in uses_of])
         for uses_of in _grouped(uses_called)[:_MOST]

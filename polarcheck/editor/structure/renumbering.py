@@ -11,7 +11,7 @@ from collections import Counter
 from lsprotocol import types
 
 from polarcheck.editor.structure.document import Document
-from polarcheck.editor.structure.mention import Into, Kind, Role
+from polarcheck.editor.structure.mention import Into, Kind, Mention, Role
 from polarcheck.editor.structure.reference_search import by_document
 from polarcheck.editor.structure.uses import Owner, Use, Uses
 from polarcheck.editor.structure.workspace import Workspace
@@ -96,10 +96,13 @@ def _owner_at(uses: Uses, position: types.Position) -> Owner | None:
     return next((owner for owner in owners if _numbers(owner)), None)
 
 
-def _numbers(owner: Owner) -> list[int]:
+def _heads(owner: Owner) -> list[Mention]:
     """Return the N numbers at the blocks of a program, in order."""
-    heads = [head for head in owner.all if head.kind is Kind.SEQUENCE and head.role is Role.DEFINES]
-    return [int(head.name) for head in heads]
+    return [head for head in owner.all if head.kind is Kind.SEQUENCE and head.role is Role.DEFINES]
+
+
+def _numbers(owner: Owner) -> list[int]:
+    return [int(head.name) for head in _heads(owner)]
 
 
 def _leads_inside(kind: Kind, into: Into) -> bool:
@@ -122,8 +125,7 @@ def _new_numbers(owner: Owner) -> dict[int, int]:
 
 def _width(owner: Owner) -> int:
     """Return the digits of numbers with zeros before them."""
-    heads = [head.written for head in owner.all if head.kind is Kind.SEQUENCE and head.role is Role.DEFINES]
-    return max((len(written) for written in heads if written.startswith("0")), default=0)
+    return max((len(head.written) for head in _heads(owner) if head.written.startswith("0")), default=0)
 
 
 def _line(owner: Owner, block: int) -> str:

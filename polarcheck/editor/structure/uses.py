@@ -36,6 +36,11 @@ class Owner(NamedTuple):
         """Its mentions."""
         return self.mentions.of_program(self.program)
 
+    @property
+    def calls(self) -> list[Mention]:
+        """Those that call a program."""
+        return [mention for mention in self.all if mention.kind is Kind.PROGRAM and mention.role is Role.REFERS]
+
 
 class Use(NamedTuple):
     """A mention of a document."""
@@ -80,12 +85,7 @@ class Uses:
         """Return the calls of a document."""
         return document.cached(
             "calls",
-            lambda: [
-                Use(owner, mention)
-                for owner in self.owners(document)
-                for mention in owner.all
-                if mention.kind is Kind.PROGRAM and mention.role is Role.REFERS
-            ],
+            lambda: [Use(owner, mention) for owner in self.owners(document) for mention in owner.calls],
         )
 
     def at(self, character: int) -> Use | None:
@@ -186,12 +186,8 @@ class Uses:
 
     def callees(self, owner: Owner) -> list[Owner]:
         """Return the programs that a program calls."""
-        calls = {
-            mention.keys: called_name(mention)
-            for mention in owner.all
-            if mention.kind is Kind.PROGRAM and mention.role is Role.REFERS
-        }
-        return _once(callee for called in calls.values() for callee in self.resolved(owner, called))
+        names = {mention.keys: called_name(mention) for mention in owner.calls}
+        return _once(callee for called in names.values() for callee in self.resolved(owner, called))
 
     def callers(self, owner: Owner) -> list[Owner]:
         """Return the programs that call a program."""
@@ -259,13 +255,7 @@ class Uses:
         while stack and len(connected) < _MOST and self.workspace.has_time():
             last = stack.pop()
             codes = set(last.mentions.listing.macro.subprogram_calls)
-            calls = [
-                mention
-                for mention in last.all
-                if mention.kind is Kind.PROGRAM
-                and mention.role is Role.REFERS
-                and (not subprograms_only or mention.code in codes)
-            ]
+            calls = [mention for mention in last.calls if not subprograms_only or mention.code in codes]
             near = [called for mention in calls for called in self.resolved(last, called_name(mention))]
             near += [
                 use.owner

@@ -45,24 +45,27 @@ def bows(radius: Floats, angle: Floats) -> Floats:
 
     radius: float64[n + 1], X as a radius, of either sign [mm]. angle: float64[n + 1], unwrapped [rad].
     """
-    step, turn = np.diff(radius), np.diff(angle)
-    widest = np.maximum(np.abs(radius[1:]), np.abs(radius[:-1]))
-    short = np.hypot(2 * step * turn, widest * turn**2) / 8
+    turn = np.diff(angle)
     # Along the chord it runs unevenly, aside of it that is no error: only what is across counts for short moves.
     start, end = radius[:-1] * np.exp(1j * angle[:-1]), radius[1:] * np.exp(1j * angle[1:])
     middle = (radius[1:] + radius[:-1]) / 2 * np.exp(0.5j * (angle[1:] + angle[:-1]))
     chord = end - start
     long = np.abs(chord)
     across = np.abs(((middle - start) * np.conj(chord)).imag) / np.where(long > ZERO, long, 1)
-    return np.asarray(np.where((np.abs(turn) < 0.5) & (long > ZERO), across, short))
+    return np.asarray(np.where((np.abs(turn) < 0.5) & (long > ZERO), across, _short_bows(radius, turn)))
+
+
+def _short_bows(radius: Floats, turn: Floats) -> Floats:
+    """The same of moves of few degrees. turn: float64[n] [rad]."""
+    widest = np.maximum(np.abs(radius[1:]), np.abs(radius[:-1]))
+    return np.asarray(np.hypot(2 * np.diff(radius) * turn, widest * turn**2) / 8)
 
 
 @quiet
 def counts(radius: Floats, angle: Floats, tolerance: float) -> Floats:
     """Return how many pieces each move needs (float64[n], at least 2, or 1 for a radial line) as `sampled` has them."""
-    step, turn = np.diff(radius), np.diff(angle)
-    widest = np.maximum(np.abs(radius[1:]), np.abs(radius[:-1]))
-    bow = np.hypot(2 * step * turn, widest * turn**2) / 8
+    turn = np.diff(angle)
+    bow = _short_bows(radius, turn)
     return np.where(turn == 0, 1.0, np.maximum(2.0, np.ceil(np.sqrt(bow / (_SHARE * tolerance)))))
 
 

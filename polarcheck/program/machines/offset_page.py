@@ -76,7 +76,7 @@ def entries(text: str) -> Iterator[Entry]:
         elif "WEAR" in line or "GEOM" in line:
             is_wear = "WEAR" in line
         elif began:
-            raise NotUnderstoodError(number, f"expected an offset in columns ({_order(columns)}), found {_short(line)}")
+            raise NotUnderstoodError(number, f"expected an offset in columns ({_order(columns)}), found {short(line)}")
 
 
 def _cells(line: str) -> list[str]:
@@ -108,18 +108,18 @@ def _of_line(line: int, text: str, cells: list[str], columns: list[str] | None, 
     if len(cells) > len(names) or names.count("radius") > 1 or (columns is None and len(cells) < len(_USUAL) - 1):
         said = "two columns are R" if names.count("radius") > 1 else f"expected {_order(columns)}"
         is_certain = columns is not None or len(cells) >= len(_USUAL) - 1
-        raise NotUnderstoodError(line, f"{said}, found {_short(text)}", is_certain)
+        raise NotUnderstoodError(line, f"{said}, found {short(text)}", is_certain)
     given = dict(zip(names, cells, strict=False))
     match = _OFFSET.fullmatch(given["number"])
     if match is None:
-        raise NotUnderstoodError(line, f"expected the number of an offset, found {_short(given['number'])}")
+        raise NotUnderstoodError(line, f"expected the number of an offset, found {short(given['number'])}")
     is_geometry = match[1] == "G" or (not match[1] and not is_wear)
     for key in ("radius", "nose", "x"):
         written = given.get(key, "")
         if not written or not int(match[2]):
             continue
         if _NUMBER.fullmatch(written) is None:
-            raise NotUnderstoodError(line, f"expected a number as {_TITLES[key]}, found {_short(written)}")
+            raise NotUnderstoodError(line, f"expected a number as {_TITLES[key]}, found {short(written)}")
         yield Entry(line, str(int(match[2])), is_geometry, key, float(written.replace(",", ".")))
 
 
@@ -130,6 +130,7 @@ def _order(columns: list[str] | None) -> str:
     return " ".join(_TITLES[name] for name in columns or _USUAL)
 
 
-def _short(line: str) -> str:
+def short(line: str) -> str:
+    """What a message shows of a line."""
     text = " ".join(line[: 4 * _SHOWN].split())
     return text if len(text) <= _SHOWN else f"{text[:_SHOWN]}..."

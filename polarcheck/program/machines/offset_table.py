@@ -11,7 +11,7 @@ from polarcheck.foundation import bounded
 from polarcheck.foundation.errors import JobError
 from polarcheck.program.machines import offset_page, tool_data
 from polarcheck.program.machines.job import PunchedTool, Tool
-from polarcheck.program.machines.offset_page import Entry, NotUnderstoodError
+from polarcheck.program.machines.offset_page import Entry, NotUnderstoodError, short
 from polarcheck.program.machines.value_types import MisfitError, fitted
 
 #: A table of 10,000 offsets has half a megabyte [bytes].
@@ -127,7 +127,7 @@ def _check_other(line: int, block: str, units: Units | None) -> None:
                 line, f'G{said[1]}: the table is in {declared}; give units = "{declared}" beside offsets', True
             )
     elif _FRAME.fullmatch(block.strip("\x1a")) is None:
-        raise NotUnderstoodError(line, f"{_EXPECTED}, found {_short(block)}")
+        raise NotUnderstoodError(line, f"{_EXPECTED}, found {short(block)}")
 
 
 def _words(line: int, block: str) -> dict[str, str]:
@@ -146,7 +146,7 @@ def _words(line: int, block: str) -> dict[str, str]:
         end = match.end()
     words.pop("N", None)
     if block[end:].strip("\x1a \t/"):
-        raise NotUnderstoodError(line, f"{_EXPECTED}, found {_short(block)}")
+        raise NotUnderstoodError(line, f"{_EXPECTED}, found {short(block)}")
     return words
 
 
@@ -161,10 +161,10 @@ def _of_block(line: int, block: str, words: dict[str, str], has_radii: bool) -> 
             "C": "C changes R by a step, and R before it is not known",
             "P": "P, the number of the offset, is missing",
         }
-        raise NotUnderstoodError(line, f"{said[why]}: {_short(block)}", True)
+        raise NotUnderstoodError(line, f"{said[why]}: {short(block)}", True)
     written = words["P"].partition(".")[0].lstrip("+0")
     if not written.isdecimal() and written:
-        raise NotUnderstoodError(line, f"P{_short(words['P'])} is no number of an offset", True)
+        raise NotUnderstoodError(line, f"P{short(words['P'])} is no number of an offset", True)
     if len(written) > _DIGITS:
         raise NotUnderstoodError(line, f"P{written[:_SHOWN]}... is no number of an offset", True)
     above, number = divmod(int(written or 0), _GEOMETRY)
@@ -181,11 +181,6 @@ def _of_block(line: int, block: str, words: dict[str, str], has_radii: bool) -> 
 
 def _number(written: str | None) -> int | None:
     return None if written is None else int(float(written)) if len(written) <= _DIGITS else -1
-
-
-def _short(block: str) -> str:
-    text = " ".join(block[: 4 * _SHOWN].split())
-    return text if len(text) <= _SHOWN else f"{text[:_SHOWN]}..."
 
 
 def _tools(entries: Iterable[Entry], title: str) -> dict[str, Tool]:

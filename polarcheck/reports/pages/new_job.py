@@ -15,7 +15,7 @@ from polarcheck.program.reading.excerpt import shortened, visible
 from polarcheck.reports import counted
 
 SCHEMA_FILE = "polarcheck.schema.json"
-_COLUMNS = 100
+COLUMNS = 100
 #: How many programs are named; of the others the number is given.
 _NAMED = 3
 #: The most entries for programs whose comments give different radii.
@@ -36,7 +36,7 @@ def text(survey: Survey, machine: str | None, outer: str | None, schema: bool, e
     """
     lines = [
         *([f"#:schema ./{SCHEMA_FILE}", ""] if schema else []),
-        *_prose(
+        *prose(
             "What polarcheck knows of these programs beside their text. Take the # away from a line to give a value."
             " `polarcheck config show PROGRAM` tells what applies to one of them, and why."
         ),
@@ -113,7 +113,7 @@ def _certain(survey: Survey) -> str | None:
 def _outer(outer: str | None) -> Iterator[str]:
     if outer is not None:
         yield ""
-        yield from _prose(f"{outer} has applied to these programs so far. This line lets it apply under this file:")
+        yield from prose(f"{outer} has applied to these programs so far. This line lets it apply under this file:")
         yield f"#extend = {toml(outer)}"
 
 
@@ -121,13 +121,13 @@ def _machine(survey: Survey, machine: str | None) -> Iterator[str]:
     certain = machine or _certain(survey)
     rivals = [name for name in survey.fitting if name != certain]
     if machine is None and not survey.polar:
-        yield from _prose("No program here uses the polar mode, so none tells which lathe it is for.")
+        yield from prose("No program here uses the polar mode, so none tells which lathe it is for.")
     elif machine is None and not survey.fitting:
-        yield from _prose("No one machine reads all of these programs: give each lathe its own, under [[programs]].")
+        yield from prose("No one machine reads all of these programs: give each lathe its own, under [[programs]].")
     elif machine is None and rivals:
         which = "These read the programs" if certain is None else "These read them as well"
-        yield from _prose(f"{which}: {', '.join(rivals)}.")
-    yield from _prose(
+        yield from prose(f"{which}: {', '.join(rivals)}.")
+    yield from prose(
         "The lathe: one of `polarcheck machines`, or a file of your own, which `polarcheck machines new` writes."
     )
     yield f"machine = {toml(certain)}" if certain else f"#machine = {toml(profiles.DEFAULT)}"
@@ -152,14 +152,14 @@ def _units(survey: Survey) -> Iterator[str]:
 
 
 def _tools(survey: Survey) -> Iterator[str]:
-    yield from _prose(
+    yield from prose(
         "The tool offsets that are called in the polar mode: T0808 calls offset 8. R decides where the center of the"
         " cutter goes; without it such a program is unverified."
     )
     for key in sorted(survey.offsets, key=_order):
         calls = survey.offsets[key]
         by_radius = _radii(calls)
-        yield from _prose(_paths([call.path for call in calls]))
+        yield from prose(_paths([call.path for call in calls]))
         yield f"[tools.{_key(key)}]"
         if len(by_radius) > 1:
             yield "# the comments of the programs differ: see [[programs]] below"
@@ -172,7 +172,7 @@ def _tools(survey: Survey) -> Iterator[str]:
 
 
 def _programs(survey: Survey) -> Iterator[str]:
-    yield from _prose(
+    yield from prose(
         "What holds for some of the programs only. Patterns are relative to this file; a name without a folder is found"
         " in every folder; capitals make no difference. Of several entries for a program the last one counts."
     )
@@ -228,10 +228,11 @@ def _key(key: str) -> str:
 
 def toml(value: object) -> str:
     """Return a value as TOML writes it."""
-    # JSON allows unprintable characters that TOML does not.
+    # JSON allows characters that TOML does not, and some that control a terminal.
     text = msgspec.json.encode(value).decode()
     return "".join(character if character.isprintable() else f"\\U{ord(character):08x}" for character in text)
 
 
-def _prose(text: str) -> list[str]:
-    return [f"# {line}" for line in textwrap.wrap(text, _COLUMNS - 2, break_on_hyphens=False)]
+def prose(text: str) -> list[str]:
+    """Return a text as lines of comments."""
+    return [f"# {line}" for line in textwrap.wrap(text, COLUMNS - 2, break_on_hyphens=False)]

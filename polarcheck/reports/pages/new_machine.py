@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import re
-import textwrap
 from collections.abc import Iterator
 from typing import Any
 
@@ -14,6 +13,7 @@ from polarcheck.program.machines.machine import meanings
 from polarcheck.program.machines.parameters import Meaning
 from polarcheck.program.machines.profiles import MERGED, Profile, load
 from polarcheck.program.reading.excerpt import visible
+from polarcheck.reports.pages.new_job import COLUMNS, prose, toml
 from polarcheck.rules.rule import load_all
 
 #: The keys that a shop may want to set, by table, each with an example for when its value is unknown, or None.
@@ -142,7 +142,6 @@ _TOOLS = (
     " mount and shape in polarcheck.toml beside the programs, where machine = names this file. Lists of G codes by what"
     " they do, macro variables and offsets are shown by `polarcheck machines`, and may be given here, too."
 )
-_COLUMNS = 100
 #: A longer list is broken into several lines [characters].
 _LONGEST = 180
 
@@ -155,7 +154,7 @@ def text(name: str, inherits: str) -> str:
     """
     profile = load(inherits)
     lines = [
-        *_prose(
+        *prose(
             f"{name}: a lathe of our own. All that is not said here is as on {profile.machine.title}. Take the # away"
             " from a line to answer it; give a source with { value = ..., source = ... } if you like. Then"
             " `polarcheck machines check` with this file tells whether it is sound, and what is still to be answered.",
@@ -167,7 +166,7 @@ def text(name: str, inherits: str) -> str:
         *_parameters(profile),
         *_alarms_and_severities(profile),
         "",
-        *_prose(_TOOLS),
+        *prose(_TOOLS),
     ]
     # Text from another file is escaped: a line end in it would end the comment.
     return "\n".join(map(visible, lines)) + "\n"
@@ -181,25 +180,25 @@ def short_text(name: str, inherits: str) -> str:
     """
     profile = load(inherits)
     lines = [
-        *_prose(
+        *prose(
             f"{name}: a lathe of our own, in ten answers. Behind each # stands what {profile.machine.title} has or,"
             " where that is not known, an example. Take the # away from a line that you can answer, and write what"
             " your lathe has. Then `polarcheck machines check` with"
             " this file tells what is wrong in it.",
         ),
         "",
-        *_prose("1. Which control? `polarcheck machines` lists them."),
+        *prose("1. Which control? `polarcheck machines` lists them."),
         f"inherits = {_toml(inherits)}",
         f"title = {_toml(name)}",
     ]
     group = ""
     for number, (table, question, keys) in enumerate(_SHORT, 2):
-        lines += ["", *([f"[{table}]"] if table != group else []), *_prose(f"{number}. {question}")]
+        lines += ["", *([f"[{table}]"] if table != group else []), *prose(f"{number}. {question}")]
         group = table
         meaning = meanings(type(getattr(profile.written, table)))
         for key in keys:
             lines += _answer(key, _example(profile, table, key, _QUESTIONS[table].get(key)), meaning[key])
-    lines += ["", *_prose(_TABLE_OF_RADII.format(file=name, inherits=inherits))]
+    lines += ["", *prose(_TABLE_OF_RADII.format(file=name, inherits=inherits))]
     return "\n".join(map(visible, lines)) + "\n"
 
 
@@ -217,7 +216,7 @@ def _example(profile: Profile, group: str, key: str, answer: Any) -> Any:
 def _questions(profile: Profile) -> Iterator[str]:
     """Yield the tables of _QUESTIONS, with the doubts about what the profile says."""
     for group, keys in _QUESTIONS.items():
-        yield from ("", f"[{group}]", *_prose(_HEADS.get(group, "")))
+        yield from ("", f"[{group}]", *prose(_HEADS.get(group, "")))
         table = getattr(profile.written, group)
         meaning = meanings(type(table))
         doubt = ""
@@ -225,7 +224,7 @@ def _questions(profile: Profile) -> Iterator[str]:
             origin = profile.origins.get(f"{group}.{key}")
             if origin and origin.doubtful and origin.source != doubt:
                 doubt = origin.source
-                yield from _prose(f"in doubt: {doubt}")
+                yield from prose(f"in doubt: {doubt}")
             yield from _answer(key, _example(profile, group, key, answer), meaning[key])
         yield from _in_doubt(profile, group, set(keys))
 
@@ -233,10 +232,10 @@ def _questions(profile: Profile) -> Iterator[str]:
 def _alarms_and_severities(profile: Profile) -> Iterator[str]:
     """Yield the alarm and the severity of each rule, as they are without this file."""
     rules, machine = load_all(), profile.machine
-    yield from ("", "[alarms]", *_prose("what the control shows, by rule; empty where it shows nothing"))
+    yield from ("", "[alarms]", *prose("what the control shows, by rule; empty where it shows nothing"))
     for rule in rules.values():
         yield f"#{rule.name} = {_toml(machine.alarms.get(rule.name, ''))}  # {rule.title}"
-    yield from ("", "[severities]", *_prose("error, warning, note or off, by rule"))
+    yield from ("", "[severities]", *prose("error, warning, note or off, by rule"))
     for rule in rules.values():
         yield f"#{rule.name} = {_toml(rule.level(machine.severities))}  # {rule.title}"
 
@@ -262,7 +261,7 @@ def _in_doubt(profile: Profile, group: str, listed: set[str]) -> Iterator[str]:
         origin = profile.origins.get(f"{group}.{key}")
         if origin and origin.doubtful and key not in listed:
             if origin.source != doubt:
-                yield from _prose(f"in doubt: {origin.source}")
+                yield from prose(f"in doubt: {origin.source}")
             doubt = origin.source
             # A merged table is extended, not replaced: one entry shows how.
             sample = dict(list(value.items())[:1]) if f"{group}.{key}" in MERGED else value
@@ -276,7 +275,7 @@ def _answer(key: str, value: Any, meaning: str) -> Iterator[str]:
         yield from (f"# {meaning}", first, *further)
         return
     line = first
-    is_short = len(line) + len(meaning) + 4 <= _COLUMNS
+    is_short = len(line) + len(meaning) + 4 <= COLUMNS
     if meaning and not is_short:
         yield f"# {meaning}"
     yield f"{line}  # {meaning}" if meaning and is_short else line
@@ -297,7 +296,7 @@ def _parameters(profile: Profile) -> Iterator[str]:
     """Yield the control parameters that can be copied from the screen."""
     if not profile.machine.known_parameters:
         return
-    yield from ("", "[parameters]", *_prose("as the control shows them; each sets the values that it stands for"))
+    yield from ("", "[parameters]", *prose("as the control shows them; each sets the values that it stands for"))
     for name, meaning in profile.machine.known_parameters.items():
         example = _present(profile, meaning) or next(iter(meaning.values), "3600")
         number = example.isascii() and example.replace(".", "").isdecimal()
@@ -315,10 +314,6 @@ def _present(profile: Profile, meaning: Meaning) -> str:
     return f"{value / meaning.factor:g}"
 
 
-def _prose(text: str) -> list[str]:
-    return [f"# {line}" for line in textwrap.wrap(text, _COLUMNS - 2, break_on_hyphens=False)]
-
-
 def _toml_key(key: str) -> str:
     return key if key.isascii() and key.replace("_", "").replace("-", "").isalnum() else _toml(key)
 
@@ -327,8 +322,4 @@ def _toml(value: Any) -> str:
     if isinstance(value, dict):
         inside = ", ".join(f"{_toml(key)} = {_toml(element)}" for key, element in value.items())
         return f"{{ {inside} }}" if inside else "{ }"
-    # JSON allows characters that TOML does not, and some that control a terminal.
-    return "".join(
-        character if character.isprintable() else f"\\U{ord(character):08x}"
-        for character in msgspec.json.encode(value).decode()
-    )
+    return toml(value)
