@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import functools
 import math
 import re
+import tomllib
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import msgspec
@@ -16,134 +19,16 @@ from polarcheck.program.reading.excerpt import visible
 from polarcheck.reports.pages.new_job import COLUMNS, prose, toml
 from polarcheck.rules.rule import load_all
 
-#: The keys that a shop may want to set, by table, each with an example for when its value is unknown, or None.
-_QUESTIONS: dict[str, dict[str, Any]] = {
-    "limits": {
-        "c_feed": 3600,
-        "c_acceleration": 7200,
-        "x_feed": 5000,
-        "x_acceleration": 2000,
-        "x_rapid": 12000,
-        "z_rapid": 24000,
-        "c_rapid": 72000,
-        "live_tool_speed": 6000,
-        "block_time": 0.004,
-        "polar_feed": 2000,
-        "polar_feed_clamps": True,
-        "automatic_override": True,
-        "override_share": 90,
-        "keep_out": 0.1,
-        "x_minimum": -10.0,
-        "x_maximum": 200.0,
-        "z_minimum": -500.0,
-        "z_maximum": 300.0,
-    },
-    "m_codes": {
-        "c_axis_on": ["M35"],
-        "c_axis_off": ["M34"],
-        "c_axis_clamp": ["M210"],
-        "c_axis_unclamp": ["M212"],
-        "live_tool_on": ["M33"],
-        "live_tool_off": ["M5"],
-        "spindle_on": ["M3", "M4"],
-        "spindle_off": ["M5"],
-        "sub_c_axis_on": ["M135"],
-        "sub_c_axis_off": ["M134"],
-        "sub_c_axis_clamp": ["M310"],
-        "sub_c_axis_unclamp": ["M312"],
-        "sub_spindle_on": ["M103", "M104"],
-        "sub_spindle_off": ["M105"],
-        "tool_change": ["M6"],
-        "optional_stop": ["M1"],
-        "program_end": ["M2", "M30"],
-        "stops_reading_ahead": ["M0", "M1"],
-    },
-    # Each names a list of G codes; the example is the first code in it.
-    "power_on": {
-        "motion": "rapid",
-        "plane": "plane_zx",
-        "feed_mode": "feed_per_revolution",
-        "distance": "absolute",
-    },
-    "feed": {
-        "cutting_minimum": 25,
-        "cutting_maximum": 250,
-        "positioning_minimum": 750,
-        "positioning_maximum": 1500,
-        "carried_into_polar": "modal",
-        **dict.fromkeys(("dwell_words", "dwell_per_revolution")),
-    },
-    "polar": {
-        **dict.fromkeys(("on", "off", "virtual_axis", "virtual_axis_incremental", "x", "virtual_axis_programming")),
-        "allowed_codes": ["+G93", "-G80"],
-        **dict.fromkeys(
-            (
-                *("words_beside_switch", "plane_before", "other_axes", "feed_measures", "repeated_z"),
-                *("center_error", "linear_axis", "rotary_axis"),
-            )
-        ),
-        "main_spindle_must_stop": None,
-    },
-    "control": {
-        **dict.fromkeys(("g_code_system", "units", "x", "number_without_point", "m_code_limit", "offset_digits")),
-        "rotary_rolls_over": None,
-        "axes": [],
-        "known_codes": ["+G150"],
-    },
-    "arcs": dict.fromkeys(("tolerance", "sweep_limit")),
-    "compensation": {
-        **dict.fromkeys(("start_up", "start_up_with_move", "corner", "corner_arc_above", "corner_arc_from")),
-        **dict.fromkeys(("read_ahead", "interference", "leaving_cancels")),
-    },
-}
 #: Lists that are written as differences from the inherited list.
 _DIFFERING = ("allowed_codes", "known_codes")
-#: The comment before the keys of a table.
-_HEADS = {
-    "m_codes": 'Where a word beside it tells one M code apart, write both: live_tool_on = ["M3 P12"]. The keys with'
-    " sub_ are those of a sub-spindle with codes of its own.",
-    "power_on": "G codes that are in force when a program begins and selects none",
-    "polar": 'Lists of codes may say what differs from the inherited one, + or - before each code: ["+G93", "-G80"].',
-}
-#: What a setter knows without the builder's manual: table, question, and the keys that answer it. They are numbered
-#: from 2: question 1 is the control, from which the file inherits.
-_SHORT: tuple[tuple[str, str, tuple[str, ...]], ...] = (
-    (
-        "control",
-        "Is feed per minute G98 and per revolution G99 (A), or G94 and G95 beside G90 and G91 (B)?",
-        ("g_code_system",),
-    ),
-    ("control", "Is X60. a diameter of 60, or a radius?", ("x",)),
-    (
-        "polar",
-        "Which codes begin and end the polar mode; between them, which address has the second axis, and is X60. a"
-        " diameter there?",
-        ("on", "off", "virtual_axis", "x"),
-    ),
-    ("limits", "How fast may C turn while it cuts? Turns in a minute times 360.", ("c_feed",)),
-    ("limits", "How fast does the live tool turn at most?", ("live_tool_speed",)),
-    (
-        "m_codes",
-        "Which M codes make the spindle the C axis, and the C axis the spindle again?",
-        ("c_axis_on", "c_axis_off"),
-    ),
-    ("m_codes", "Which M codes clamp C for drilling, and release it?", ("c_axis_clamp", "c_axis_unclamp")),
-    ("m_codes", "Which M codes start and stop the live tool?", ("live_tool_on", "live_tool_off")),
-    ("power_on", "Which feed is in force when the lathe is switched on?", ("feed_mode",)),
-)
-_TABLE_OF_RADII = (
-    "R of the tools is not the lathe's, but that of the job: punch out the offset table of the control, and write"
-    ' offsets = "FILE" into polarcheck.toml beside the programs, or [tools.8] with radius = 4.0, and'
-    ' machine = "{file}.toml". `polarcheck init` writes that file. All that can be said of a lathe is in the file'
-    " that `polarcheck machines new {file} --from {inherits}` writes without --short."
-)
-_TOOLS = (
-    "The tools of the turret, and which are radial or axial, flat or ball, belong to the job: [tools.8] with radius,"
-    " mount and shape in polarcheck.toml beside the programs, where machine = names this file. Lists of G codes by what"
-    " they do, macro variables and offsets are shown by `polarcheck machines`, and may be given here, too."
-)
 #: A longer list is broken into several lines [characters].
 _LONGEST = 180
+
+
+@functools.cache
+def _asked() -> dict[str, Any]:
+    """What new_machine.toml says: questions and heads by table, the questions of --short, what belongs to the job."""
+    return tomllib.loads(Path(__file__).with_suffix(".toml").read_text("utf-8"))
 
 
 def text(name: str, inherits: str) -> str:
@@ -166,7 +51,7 @@ def text(name: str, inherits: str) -> str:
         *_parameters(profile),
         *_alarms_and_severities(profile),
         "",
-        *prose(_TOOLS),
+        *prose(_asked()["of_job"]["whole"]),
     ]
     # Text from another file is escaped: a line end in it would end the comment.
     return "\n".join(map(visible, lines)) + "\n"
@@ -192,40 +77,43 @@ def short_text(name: str, inherits: str) -> str:
         f"title = {_toml(name)}",
     ]
     group = ""
-    for number, (table, question, keys) in enumerate(_SHORT, 2):
-        lines += ["", *([f"[{table}]"] if table != group else []), *prose(f"{number}. {question}")]
+    # Question 1 is the control, from which the file inherits.
+    for number, asked in enumerate(_asked()["short"], 2):
+        table = asked["table"]
+        lines += ["", *([f"[{table}]"] if table != group else []), *prose(f"{number}. {asked['question']}")]
         group = table
         meaning = meanings(type(getattr(profile.written, table)))
-        for key in keys:
-            lines += _answer(key, _example(profile, table, key, _QUESTIONS[table].get(key)), meaning[key])
-    lines += ["", *prose(_TABLE_OF_RADII.format(file=name, inherits=inherits))]
+        for key in asked["keys"]:
+            lines += _answer(key, _example(profile, table, key), meaning[key])
+    lines += ["", *prose(_asked()["of_job"]["short"].format(file=name, inherits=inherits))]
     return "\n".join(map(visible, lines)) + "\n"
 
 
-def _example(profile: Profile, group: str, key: str, answer: Any) -> Any:
-    """Return the value of the machine or, where that is not known, the example `answer`."""
+def _example(profile: Profile, group: str, key: str) -> Any:
+    """Return the value of the machine or, where that is not known, the example."""
+    answer = _asked()["questions"][group].get(key, "")
     if group == "power_on":
         answer = next(iter(profile.machine.codes(answer)), "")
     value = getattr(getattr(profile.written, group), key)
     if (group, key) == ("control", "x"):
         value = profile.written.control.x_without_words or value
     is_known = value not in ([], "") and value == value and key not in _DIFFERING
-    return value if is_known or answer is None else answer
+    return value if is_known or answer == "" else answer
 
 
 def _questions(profile: Profile) -> Iterator[str]:
-    """Yield the tables of _QUESTIONS, with the doubts about what the profile says."""
-    for group, keys in _QUESTIONS.items():
-        yield from ("", f"[{group}]", *prose(_HEADS.get(group, "")))
+    """Yield the tables with questions, with the doubts about what the profile says."""
+    for group, keys in _asked()["questions"].items():
+        yield from ("", f"[{group}]", *prose(_asked()["heads"].get(group, "")))
         table = getattr(profile.written, group)
         meaning = meanings(type(table))
         doubt = ""
-        for key, answer in keys.items():
+        for key in keys:
             origin = profile.origins.get(f"{group}.{key}")
             if origin and origin.doubtful and origin.source != doubt:
                 doubt = origin.source
                 yield from prose(f"in doubt: {doubt}")
-            yield from _answer(key, _example(profile, group, key, answer), meaning[key])
+            yield from _answer(key, _example(profile, group, key), meaning[key])
         yield from _in_doubt(profile, group, set(keys))
 
 
@@ -245,7 +133,7 @@ def _doubtful(profile: Profile) -> Iterator[str]:
     table = msgspec.to_builtins(profile.written)
     for group, values in table.items():
         of_other_system = group.startswith("g_code_system_") and group != profile.machine.system_table
-        other_tables = (*_QUESTIONS, "known_parameters", "parameters", "alarms", "severities")
+        other_tables = (*_asked()["questions"], "known_parameters", "parameters", "alarms", "severities")
         if isinstance(values, dict) and group not in other_tables and not of_other_system:
             lines = list(_in_doubt(profile, group, set()))
             if lines:
