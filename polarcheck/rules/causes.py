@@ -34,49 +34,31 @@ SUBJECT_OF_TABLE: Final = {
     "senses": "side",
     "tangency": "side",
 }
-#: What each subject rests on. A move is judged by itself: travel, a ramp on an arc. The speed of C is that of a move,
-#: and a rate follows from it; a shape and an outline are of a contour. A size is of a bar, a cutter or F, a stock what
-#: a bar loses, a rapid a move through it, a reach how far the cuts of a section go: their rules name them, as do those
-#: of words and of where the mode is on.
-RESTS_ON: Final = {
-    "arc": ("position", "arc"),
-    "move": ("position", "arc", "move"),
-    "speed": ("position", "arc", "move", "speed"),
-    "rate": ("position", "arc", "move", "speed", "rate"),
-    "side": ("position", "arc"),
-    "shape": ("size", "position"),
-    "outline": ("position", "arc", "compensation"),
-    "compensation": ("position", "arc", "compensation"),
-    "metal": ("position", "arc", "compensation", "metal"),
-    "infeed": ("position", "arc", "compensation", "metal"),
-    "stock": ("size", "position", "arc", "compensation", "metal"),
-    "rapid": ("size", "rapid"),
-    "reach": ("size", "position", "arc"),
-    "size": ("size", "word"),
-    "word": ("word",),
-    "mode": ("mode",),
-}
-#: The span in which each subject is judged: a wrong arc costs its own rate of C, but all of the contour.
-UNIT_OF: Final = {
-    "arc": "block",
-    "move": "block",
-    "speed": "block",
-    "rate": "block",
-    "side": "compensation",
-    "shape": "loop",
-    "outline": "loop",
-    "compensation": "loop",
-    "metal": "loop",
-    "infeed": "section",
-    "stock": "section",
-    "rapid": "block",
-    "reach": "section",
-    "size": "program",
-    "word": "block",
-    "mode": "program",
+#: The span in which each subject is judged (a wrong arc costs its own rate of C, but all of the contour), and what the
+#: subject rests on. A move is judged by itself: travel, a ramp on an arc. The speed of C is that of a move, and a rate
+#: follows from it; a shape and an outline are of a contour. A size is of a bar, a cutter or F, a stock what a bar
+#: loses, a rapid a move through it, a reach how far the cuts of a section go: their rules name them, as do those of
+#: words and of where the mode is on.
+SUBJECTS: Final = {
+    "arc": ("block", ("position", "arc")),
+    "move": ("block", ("position", "arc", "move")),
+    "speed": ("block", ("position", "arc", "move", "speed")),
+    "rate": ("block", ("position", "arc", "move", "speed", "rate")),
+    "side": ("compensation", ("position", "arc")),
+    "shape": ("loop", ("size", "position")),
+    "outline": ("loop", ("position", "arc", "compensation")),
+    "compensation": ("loop", ("position", "arc", "compensation")),
+    "metal": ("loop", ("position", "arc", "compensation", "metal")),
+    "infeed": ("section", ("position", "arc", "compensation", "metal")),
+    "stock": ("section", ("size", "position", "arc", "compensation", "metal")),
+    "rapid": ("block", ("size", "rapid")),
+    "reach": ("section", ("size", "position", "arc")),
+    "size": ("program", ("size", "word")),
+    "word": ("block", ("word",)),
+    "mode": ("program", ("mode",)),
 }
 #: All that may be doubtful, and what of it leaves the part as it is.
-DOUBTFUL: Final = frozenset(what for subject in RESTS_ON.values() for what in subject)
+DOUBTFUL: Final = frozenset(what for _, rests_on in SUBJECTS.values() for what in rests_on)
 BESIDE_PART: Final = frozenset({"speed", "rate", "rapid", "word", "mode"})
 
 #: X or the second axis is another than the one that the section was written for, or there is none.

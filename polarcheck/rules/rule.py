@@ -20,7 +20,7 @@ from polarcheck.foundation.finding import ERROR as ERROR
 from polarcheck.foundation.finding import NOTE as NOTE
 from polarcheck.foundation.finding import WARNING as WARNING
 from polarcheck.foundation.finding import Severity as Severity
-from polarcheck.rules.causes import DOUBTFUL, RESTS_ON, UNIT, UNIT_OF, Doubt, subject_of
+from polarcheck.rules.causes import DOUBTFUL, SUBJECTS, UNIT, Doubt, subject_of
 from polarcheck.rules.documented import Documented
 from polarcheck.rules.tables import ARC as ARC
 from polarcheck.rules.tables import C_ACCELERATION as C_ACCELERATION
@@ -114,7 +114,7 @@ class Rule(Documented, frozen=True):
     at: the words at fault: their addresses, the machine's lists of their codes (rapid, line), or "on" and "off" for the
     codes of the mode. The whole block is at fault if `at` is empty or the block has none of them.
     once: the span with one finding for all its hits (SPANS): a section, a program, an F word.
-    subject: the quantity that the rule judges (causes.RESTS_ON), by default that of its tables; "" for words and
+    subject: the quantity that the rule judges (causes.SUBJECTS), by default that of its tables; "" for words and
     states, which never become doubtful.
     doubts: the quantities that a finding makes doubtful, each with its span. Findings that rest on them are listed
     under this one.
@@ -164,8 +164,8 @@ class Rule(Documented, frozen=True):
             raise RuleError(f"rule {name}: {unknown.pop()!r}: expected one of {', '.join(sorted(DOUBTFUL))}")
         parameters = parameters_of(function)
         subject = subject_of(parameters) if self.subject == OF_TABLES else self.subject
-        if subject and subject not in RESTS_ON:
-            raise RuleError(f"rule {name}: {subject!r}: expected one of {', '.join(RESTS_ON)}")
+        if subject and subject not in SUBJECTS:
+            raise RuleError(f"rule {name}: {subject!r}: expected one of {', '.join(SUBJECTS)}")
         companion = getattr(function, "__globals__").get  # noqa: B009 - mypy knows it of no Callable
         return msgspec.structs.replace(
             self,
@@ -208,14 +208,14 @@ class Rule(Documented, frozen=True):
         An infeed cycle runs the whole contour of its section, so a doubt anywhere in the section counts.
         """
         causes = {span: [*names] for span, names in self.follows.items()}
-        rests_on = RESTS_ON.get(self.subject, ())
+        unit, rests_on = SUBJECTS.get(self.subject, ("", ()))
         for other in rules.values():
             for what, span in other.doubts:
                 is_peer = other.subject == self.subject and span not in OF_CAUSE
                 # The other rule follows this one, and not only one in a row above.
                 is_named = any(self.name in names for at, names in other.follows.items() if at not in OF_CAUSE)
                 if what in rests_on and not is_peer and not is_named:
-                    reach = UNIT_OF[self.subject] if span == UNIT or self.subject == "infeed" else span
+                    reach = unit if span == UNIT or self.subject == "infeed" else span
                     causes.setdefault(reach, []).append(other.name)
         return {span: causes[span] for span in SPANS if span in causes}
 
