@@ -20,62 +20,40 @@ from polarcheck.program.execution.run import Remark, Run
 from polarcheck.program.machines.machine import Machine
 from polarcheck.program.reading.excerpt import shortened
 
-#: The rule that reports each kind of fault; "" where none does.
-RULES: Final[Mapping[FaultKind, str]] = {
-    "format": "macro-syntax",
-    "statement-format": "macro-syntax",
-    "missing-open-bracket": "macro-syntax",
-    "missing-close-bracket": "macro-syntax",
-    "missing-equal": "macro-syntax",
-    "missing-comma": "macro-syntax",
-    "if-format": "macro-syntax",
-    "while-format": "macro-syntax",
-    # Words of other dialects look so (E=C, CR=10), of which it is not known what the control makes: the first is told
-    # as not evaluated, by name.
-    "word-format": "",
-    "stray-character": "",
-    "too-long": "macro-syntax",
-    "bracket-levels": "nesting-too-deep",
-    "call-levels": "nesting-too-deep",
-    "loop-levels": "nesting-too-deep",
-    "zero-divide": "arithmetic-error",
-    "overflow": "arithmetic-error",
-    "integer-overflow": "arithmetic-error",
-    "negative-square-root": "arithmetic-error",
-    "arc-function-beyond-one": "arithmetic-error",
-    "logarithm-not-positive": "arithmetic-error",
-    "argument-out-of-range": "arithmetic-error",
-    "argument-address": "macro-argument",
-    "argument-sets": "macro-argument",
-    "program-number": "subprogram-missing",
-    "program-not-found": "subprogram-missing",
-    "sequence-number-not-found": "jump-target-missing",
-    "sequence-number-vacant": "jump-target-missing",
-    "label-not-found": "jump-target-missing",
-    "label-too-long": "jump-target-missing",
-    "return-target-not-found": "jump-target-missing",
-    "call-target-not-found": "jump-target-missing",
-    "loop-without-end": "loop-unbalanced",
-    "end-without-loop": "loop-unbalanced",
-    "structure-without-end": "loop-unbalanced",
-    "end-without-structure": "loop-unbalanced",
-    "loops-crossed": "loop-unbalanced",
-    "loop-inside-itself": "loop-unbalanced",
-    "nothing-changes": "endless-loop",
-    "too-many-blocks": "endless-loop",
-    "too-many-statements": "endless-loop",
-    "runs-too-long": "endless-loop",
-    "too-many-repeats": "endless-loop",
-    "nc-and-macro": "mixed-macro-and-nc",
-    "loop-number": "loop-number-out-of-range",
-    "variable-number": "variable-out-of-range",
-    "read-only": "read-only-variable",
-    "word-vacant": "vacant-variable",
-    "mixed-logic": "ambiguous-precedence",
-    "sequence-number-twice": "duplicate-sequence-number",
-    "never-run": "unreachable-block",
-    "loop-never-run": "unreachable-block",
+#: The kinds of fault that each rule reports. Words of other dialects look like a faulty word (E=C, CR=10), and nobody
+#: knows what the control makes of them: no rule reports them, and the first is told as not evaluated, by name.
+_KINDS_OF = {
+    "macro-syntax": (
+        "format statement-format missing-open-bracket missing-close-bracket missing-equal missing-comma if-format "
+        "while-format too-long"
+    ),
+    "": "word-format stray-character",
+    "nesting-too-deep": "bracket-levels call-levels loop-levels",
+    "arithmetic-error": (
+        "zero-divide overflow integer-overflow negative-square-root arc-function-beyond-one logarithm-not-positive "
+        "argument-out-of-range"
+    ),
+    "macro-argument": "argument-address argument-sets",
+    "subprogram-missing": "program-number program-not-found",
+    "jump-target-missing": (
+        "sequence-number-not-found sequence-number-vacant label-not-found label-too-long return-target-not-found "
+        "call-target-not-found"
+    ),
+    "loop-unbalanced": (
+        "loop-without-end end-without-loop structure-without-end end-without-structure loops-crossed loop-inside-itself"
+    ),
+    "endless-loop": "nothing-changes too-many-blocks too-many-statements runs-too-long too-many-repeats",
+    "mixed-macro-and-nc": "nc-and-macro",
+    "loop-number-out-of-range": "loop-number",
+    "variable-out-of-range": "variable-number",
+    "read-only-variable": "read-only",
+    "vacant-variable": "word-vacant",
+    "ambiguous-precedence": "mixed-logic",
+    "duplicate-sequence-number": "sequence-number-twice",
+    "unreachable-block": "never-run loop-never-run",
 }
+#: The rule that reports each kind of fault; "" where none does.
+RULES: Final[Mapping[str, str]] = {kind: rule for rule, kinds in _KINDS_OF.items() for kind in kinds.split()}
 
 #: The rule that reports a program that never ends, and one that was broken off at a bound.
 ENDLESS_LOOP = "endless-loop"

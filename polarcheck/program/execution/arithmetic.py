@@ -10,6 +10,7 @@ Sources: FANUC B-62754EN/01, chapter 16.3; the ranges of ASIN, ACOS and ATAN fro
 from __future__ import annotations
 
 import math
+import operator
 from collections.abc import Callable, Mapping, Sequence
 from typing import Final, TypeAlias
 
@@ -140,21 +141,21 @@ def _power(a: float, b: float) -> float | FaultKind:
 
 _OPERATIONS: Final[Mapping[str, Callable[..., float | FaultKind]]] = {
     "NEGATE": lambda a: 0.0 - a,
-    "+": lambda a, b: a + b,
-    "-": lambda a, b: a - b,
-    "*": lambda a, b: a * b,
+    "+": operator.add,
+    "-": operator.sub,
+    "*": operator.mul,
     "/": lambda a, b: a / b if b else "zero-divide",
     "MOD": _whole_numbers(_remainder),
-    "AND": _whole_numbers(lambda a, b: a & b),
-    "OR": _whole_numbers(lambda a, b: a | b),
-    "XOR": _whole_numbers(lambda a, b: a ^ b),
-    "GT": lambda a, b: a > b,
-    "LT": lambda a, b: a < b,
-    "GE": lambda a, b: a >= b,
-    "LE": lambda a, b: a <= b,
+    "AND": _whole_numbers(operator.and_),
+    "OR": _whole_numbers(operator.or_),
+    "XOR": _whole_numbers(operator.xor),
+    "GT": operator.gt,
+    "LT": operator.lt,
+    "GE": operator.ge,
+    "LE": operator.le,
     "BOTH": lambda a, b: a and b,
     "EITHER": lambda a, b: a or b,
-    "ONE": lambda a, b: a != b,
+    "ONE": operator.ne,
     "SIN": _sin,
     "COS": _cos,
     "TAN": _tan,
@@ -176,7 +177,7 @@ _OPERATIONS: Final[Mapping[str, Callable[..., float | FaultKind]]] = {
     "LEAST": min,
     "GREATEST": max,
     "DIV": lambda a, b: float(math.trunc(a / b)) if b else "zero-divide",
-    "NOT": lambda a: not a,
+    "NOT": operator.not_,
     "B_NOT": lambda a: float(~int(round_to(a, 1))),
     "JOIN": lambda a, b: UNKNOWN,  # strings are not followed
     "ADP": lambda a: UNKNOWN,  # it asks whether an argument of the call was written with a point
