@@ -20,7 +20,7 @@ from polarcheck.foundation.states import FeedMode, Motion, Side
 from polarcheck.program.machines import profiles
 from polarcheck.program.machines.job import Job, Tool
 from polarcheck.program.reading import source
-from polarcheck.reports.concise import concise
+from polarcheck.reports.concise import lines as concise_lines
 from polarcheck.rules import places
 from polarcheck.rules.rule import load_all
 from polarcheck.rules.tables import Tables
@@ -240,10 +240,7 @@ def _report(tables: Tables, row: int) -> Iterator[str]:
 
 
 def _concise(report: Any) -> list[str]:
-    from polarcheck.files.batch.tasks import report as of_files
-
-    text = concise(of_files([report], "fanuc"))
-    return [line for line in text.splitlines() if line.startswith("flat.nc")]
+    return list(concise_lines(report, silenced=False))
 
 
 def _where_to_look() -> Iterator[str]:
