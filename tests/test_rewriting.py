@@ -48,7 +48,7 @@ def call(*arguments: str | Path, source: str | bytes | None = None) -> Result:
         """Stand in for the command line."""
 
     @main.command()
-    @rewriting(length("--chord-error", default=0.005, largest=1.0))
+    @rewriting(length("--chord-error", default=0.005, text="how far"))
     def slow(chord_error: float | None) -> Command:
         """Slow a program down."""
         return Command("unroll", "slowed down", lambda settings: faster)

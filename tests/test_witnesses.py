@@ -92,6 +92,7 @@ def slipped(program: str, before: str, after: str) -> str:
         (SLOTS, "C-12. F1500\nZ-3. F60", "C-12. F1500\nZ-3.", 14, "plunge-at-positioning-feed"),
         (POCKETS, "Z2. F1500\nX24. C0.", "X24. C0.", 14, "lift-missing-between-cuts"),
         (POCKETS, "G3 I-6.", "G3 I-12.", 12, "circle-center-doubled"),
+        (POCKETS, "G3 I-6.", "G3 I-5.", 12, "circle-center-doubled"),
     ],
 )  # fmt: skip
 def test_the_rest_of_the_program_says_what_was_meant(
@@ -115,8 +116,8 @@ def test_the_rest_of_the_program_says_what_was_meant(
         # The lift may stand among the optional blocks without /, since it moves nothing where they are skipped.
         (OPTIONAL, "/Z2. F1500", "Z2. F1500"),
         (SLOTS, "Z2. F1500\nG13.1", "G13.1"),
-        # An eccentric circle, and one like it of another size.
-        (POCKETS, "G3 I-6.", "G3 I-5."),
+        # A pocket of another size, to which the lead is shorter, too.
+        (POCKETS, "G41 X36. F80\nG3 I-6.", "G41 X34. F80\nG3 I-5."),
     ],
 )
 def test_what_has_no_witness_stays_silent(program: str, before: str, after: str) -> None:

@@ -126,7 +126,7 @@ class FullCircles(Columns, frozen=True):
 
             scale = float(self.trace.lengths.scale[self.row[index]])
             slip = slip_of(plain_number(abs(center - start) / scale), reach / scale, _SAME)
-            if slip is None and abs(share + 1) * reach > _SAME:
+            if not (slip is not None and slip.plain) and abs(share + 1) * reach > _SAME:
                 return None
         return Intended(share.real, origin, int(self.row[likes[0]]))
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     is_symptom=True,
     once="section",
     subject="stock",
-    doubts=(("metal", "section"), ("rapid", "tool call")),
+    doubts=(("metal", "section"),),
     follows={"section": (*OUT_OF_PLACE, "contour-at-two-depths", "z-with-plane-axis", "helical-arc-in-polar")},
 )
 def cut_in_air(air_cuts: AirCuts) -> Hits:

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     subject="rapid",
     follows={
         "block": ("rapid-plunge-into-stock",),
+        "tool call": ("cut-in-air",),
         "program": ("polar-switched-in-offset-mode", "polar-never-entered"),
     },
     is_symptom=True,

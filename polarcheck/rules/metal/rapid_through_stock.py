@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     gouges=True,
     once="tool call",
     subject="rapid",
-    doubts=(("metal", "section"),),
     follows={"block": ("rapid-through-part",), "tool call": ("rapid-plunge-into-stock",)},
 )
 def rapid_through_stock(workpiece: Workpiece) -> Hits:
