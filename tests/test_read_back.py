@@ -12,6 +12,7 @@ from programs import job_of, machine_of, tables_of
 
 from polarcheck.checking.settings import Settings
 from polarcheck.geometry.comparison.path_deviation import path_deviation
+from polarcheck.rewrite.compare.compared_sections import FedPath
 from polarcheck.rewrite.compensate import centering, compensating
 from polarcheck.rewrite.compensate.centering import centered
 from polarcheck.rewrite.compensate.compensating import Compensating, compensated
@@ -22,7 +23,7 @@ from polarcheck.rewrite.unroll.unrolling import Unrolling
 from polarcheck.rewrite.unroll.unrolling import unrolled as unrolled_by
 from polarcheck.rewrite.writing.original import Original, read
 from polarcheck.rewrite.writing.outcome import RefusedError
-from polarcheck.rewrite.writing.part_paths import PartPath, path_on_part
+from polarcheck.rewrite.writing.part_paths import path_on_part
 from polarcheck.rewrite.writing.reading_back import read_back
 from polarcheck.rules.tables import Tables
 
@@ -48,13 +49,13 @@ M30
 """
 
 
-def polar_part(tables: Tables) -> PartPath:
+def polar_part(tables: Tables) -> FedPath:
     """The path within the section."""
     section = tables["trace"].mode.sections
     return path_on_part(tables, int(section.enter[0]), int(section.last[0]))
 
 
-def unrolled(path: PartPath, angle: float, step: float) -> str:
+def unrolled(path: FedPath, angle: float, step: float) -> str:
     """The path as plain X and C blocks, by points at this distance."""
     blocks = ["G98", f"G0 X60. Z2. C{angle:.4f}", "G1 Z-2. F500."]
     turn = np.exp(-1j * np.radians(angle))

@@ -121,7 +121,7 @@ class UnknownWords(Columns, frozen=True):
         # An unknown code may be any code, and leave anything in force.
         letter = trace.text.source.code[trace.run.words.start[self.index]]
         is_code = is_among(address, self._numbers("G", "M", "@"))
-        is_code |= (address == OF_SPINDLE) & is_among(letter, np.frombuffer(b"Mm", np.uint8))
+        is_code |= (address == OF_SPINDLE) & is_among(letter, (ord("M"), ord("m")))
         lasts = is_code | self._sets_origin[self.index] | self._sets_tool[row]
         matters = (in_section[row] & is_position) | (lasts & (in_section | trace.mode.comes_before_section)[row])
         lasting = [np.zeros(0, np.int64)]

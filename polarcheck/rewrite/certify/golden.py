@@ -112,15 +112,15 @@ def orders_of(trace: Trace) -> Iterator[GoldenOrder]:
 
 def _moves_outside(trace: Trace) -> Iterator[Step]:
     """Yield the moves outside of sections: X as a radius, Z [mm], C [deg] where each ends, and F of those at feed."""
-    moves = outside(trace, (), np.arange(len(trace)), Terms(ANGLE))
-    path, lines = moves.path, trace.blocks.line_in_file[moves.row].tolist()
-    places = zip(path.end.imag.tolist(), path.end.real.tolist(), (path.z_end / moves.c_scale).tolist(), strict=True)
-    motions = trace.axes.motion[moves.row].tolist()
-    for index, (row, line, place) in enumerate(zip(moves.row.tolist(), lines, places, strict=True)):
+    stretch = outside(trace, (), np.arange(len(trace)), Terms(ANGLE))
+    path, lines = stretch.path, trace.blocks.line_in_file[stretch.path.row].tolist()
+    places = zip(path.end.imag.tolist(), path.end.real.tolist(), (path.z_end / stretch.c_scale).tolist(), strict=True)
+    motions = trace.axes.motion[path.row].tolist()
+    for index, (row, line, place) in enumerate(zip(path.row.tolist(), lines, places, strict=True)):
         tokens, values = ["X", "Z", "C"], [*place]
-        if not moves.rapid[index]:
-            tokens.append(f"F{feed_unit(int(moves.feed_mode[index]))}")
-            values.append(float(moves.feed[index]))
+        if not path.rapid[index]:
+            tokens.append(f"F{feed_unit(int(path.feed_mode[index]))}")
+            values.append(float(path.feed[index]))
         known = zip(tokens, values, strict=True)
         words = [f"{token[0]}{round(value, 4) + 0.0:g}{token[1:]}" for token, value in known if value == value]
         motion = _MOTIONS[Motion(motions[index])]

@@ -13,7 +13,7 @@ from polarcheck.geometry.comparison.path_deviation import PathDeviation, path_de
 from polarcheck.reports import counted
 from polarcheck.rewrite.certify.golden import GoldenTrace, changed_orders
 from polarcheck.rewrite.certify.tool_path import ToolPath, tool_path
-from polarcheck.rewrite.compare.differences import common_pieces
+from polarcheck.rewrite.compare.differences import common_pieces, feed_differs
 from polarcheck.rewrite.compare.terms import EXACT
 
 
@@ -128,10 +128,10 @@ def _compared(
     for number in range(count):
         mine, theirs = ours.of_section(number), reference.of_section(number)
         section = f"section {number + 1}"
-        if np.isnan(mine.z_to).all() and np.isnan(theirs.z_to).all():
+        if np.isnan(mine.z_end).all() and np.isnan(theirs.z_end).all():
             remarks.append(f"{section}: Z is not compared, it is not known")
             mine, theirs = _without_z(mine), _without_z(theirs)
-        is_known = [path.space().is_known for path in (mine, theirs)]
+        is_known = [path.is_known for path in (mine, theirs)]
         unknown = [int(np.count_nonzero(~of_path)) for of_path in is_known]
         if unknown[0] != unknown[1]:
             which = "this program" if unknown[0] > unknown[1] else title
@@ -143,7 +143,7 @@ def _compared(
                 continue
         turn, why = turned_by(number, mine, theirs)
         try:
-            deviation = path_deviation(theirs.space(turn), mine.space(), tolerance)
+            deviation = path_deviation(theirs.by_degrees(turn), mine, tolerance)
         except TooHardError as error:
             return Comparison(None, [*reasons, f"{section}: not compared with {title}: {error}"], remarks)
         largest = max(largest, deviation.largest)
@@ -163,20 +163,20 @@ def _farthest_apart(deviation: PathDeviation, mine: ToolPath, tolerance: float, 
     where = section
     point_text = ""
     if location is not None:
-        where = f"line {mine.line[location.new_move]}"
+        where = f"line {mine.row[location.new_move]}"
         point_text = f" at x {location.new.real:.3f} c {location.new.imag:.3f} z {location.new_z:.3f}"
     most = "" if deviation.is_exact else "up to "
     return f"{where}: {most}{deviation.largest:.3f} mm from {title}{point_text} (tolerance {tolerance:g})"
 
 
 def _without_z(path: ToolPath) -> ToolPath:
-    flat = np.zeros(len(path.kind))
-    return msgspec.structs.replace(path, z_from=flat, z_to=flat)
+    flat = np.zeros(len(path))
+    return msgspec.structs.replace(path, z_start=flat, z_end=flat)
 
 
 def _deviation(mine: ToolPath, theirs: ToolPath, turned: float, tolerance: float) -> float:
     try:
-        return path_deviation(theirs.space(turned), mine.space(), tolerance).largest
+        return path_deviation(theirs.by_degrees(turned), mine, tolerance).largest
     except TooHardError:
         return np.inf
 
@@ -219,12 +219,9 @@ def _feed_change(mine: ToolPath, theirs: ToolPath, tolerance: float) -> tuple[in
 
     Both paths are the same.
     """
-    ours, golden, length = common_pieces(mine.space(), theirs.space())
-    now, before = mine.feed[ours], theirs.feed[golden]
-    is_rapid, was_rapid = mine.rapid[ours], theirs.rapid[golden]
-    differs = ~np.isclose(now, before, rtol=EXACT, atol=0, equal_nan=True) & ~(is_rapid & was_rapid)
-    differs = (differs | (is_rapid != was_rapid)) & (length > 2 * tolerance)
+    ours, golden, length = common_pieces(mine, theirs)
+    differs = feed_differs(theirs, golden, mine, ours, EXACT) & (length > 2 * tolerance)
     if not differs.any():
         return None
     first = int(np.argmax(differs))
-    return int(mine.line[ours[first]]), _feed(mine, ours[first]), _feed(theirs, golden[first])
+    return int(mine.row[ours[first]]), _feed(mine, ours[first]), _feed(theirs, golden[first])

@@ -7,35 +7,26 @@ from collections.abc import Sequence
 import numpy as np
 
 from polarcheck.foundation.arrays import Floats, Mask, Points, Rows
-from polarcheck.foundation.states import Motion
-from polarcheck.geometry.plane_path import PlanePath, SpacePath
+from polarcheck.foundation.states import FeedMode, Motion
 from polarcheck.reports.pages.executed import Move
 from polarcheck.rewrite.certify.golden import GoldenMove
+from polarcheck.rewrite.compare.compared_sections import FedPath
 
 _KINDS = {"line": Motion.LINE, "cw": Motion.CW, "ccw": Motion.CCW}
 
 
-class ToolPath(PlanePath, frozen=True):
+class ToolPath(FedPath, frozen=True):
     """
-    Moves of the tool center.
+    Moves of the tool center; row is the line of the block, 0 in a golden trace.
 
-    line: of the block, 0 in a golden trace.
     section: number of the polar section, counted over all channels.
-    z_from, z_to: Z before and after [mm].
-    feed: F [mm/min].
-    rapid: in rapid traverse.
     is_programmed: the programmed path in the place of the tool's, since R is unknown.
     turned: float64[sections], angle of the plane of each section on the part [deg]; NaN unknown.
     """
 
     _shared = ("turned",)
 
-    line: Rows
     section: Rows
-    z_from: Floats
-    z_to: Floats
-    feed: Floats
-    rapid: Mask
     is_programmed: Mask
     turned: Floats
 
@@ -43,9 +34,9 @@ class ToolPath(PlanePath, frozen=True):
         """Return the moves of a section, with the angles of all of them."""
         return self[self.section == number]
 
-    def space(self, turned: float = 0.0) -> SpacePath:
-        """Return the moves for a comparison, turned about the center of C by an angle [deg]."""
-        return SpacePath(*self.turned_by(np.exp(1j * np.radians(turned))).shape, self.z_from, self.z_to)
+    def by_degrees(self, angle: float) -> ToolPath:
+        """Return the moves turned about the center of C by an angle [deg]."""
+        return self.turned_by(np.exp(1j * np.radians(angle)))
 
     @property
     def farthest(self) -> float:
@@ -68,16 +59,17 @@ def tool_path(moves: Sequence[Move] | Sequence[GoldenMove], sense: int = 1) -> T
     for row in np.flatnonzero(~np.isnan(angles) & (np.abs(start) > _CENTER))[::-1]:
         turned[section[row]] = angles[row]
     return ToolPath(
-        line=np.array([getattr(move, "line", 0) for move in moves], np.intp),
-        section=section,
-        kind=np.array([_KINDS.get(move.kind, Motion.LINE) for move in moves], np.int16),
         start=start,
         end=end,
         center=_points([move.center or (None, None) for move in moves]),
-        z_from=_numbers([move.z[0] for move in moves]),
-        z_to=_numbers([move.z[1] for move in moves]),
-        feed=_numbers([move.feed for move in moves]),
+        kind=np.array([_KINDS.get(move.kind, Motion.LINE) for move in moves], np.int16),
+        z_start=_numbers([move.z[0] for move in moves]),
+        z_end=_numbers([move.z[1] for move in moves]),
+        row=np.array([getattr(move, "line", 0) for move in moves], np.intp),
         rapid=np.array([move.x_feed is None and move.feed is not None for move in moves], bool),
+        feed_mode=np.full(len(moves), FeedMode.PER_MINUTE, np.int16),
+        feed=_numbers([move.feed for move in moves]),
+        section=section,
         is_programmed=np.array([move.path == "programmed" for move in moves], bool),
         turned=turned,
     )

@@ -26,6 +26,27 @@ _NEAR_TURN = 0.01
 NOWHERE = complex("nan+nanj")
 
 
+class FedPath(SpacePath, frozen=True):
+    """
+    Moves of the tool in space, in the order in which they run.
+
+    row: row of the trace of each move, or the line of its block. rapid: it is in rapid traverse. feed_mode: FeedMode.
+    feed: F in force [mm per min or revolution], NaN without one.
+    """
+
+    row: Rows
+    rapid: Mask
+    feed_mode: States
+    feed: Floats
+
+    def position(self, row: int) -> tuple[float, float, float]:
+        """Return x, y and z of the tool before a row of the trace; NaN before the first move."""
+        move = int(np.searchsorted(self.row, row)) - 1
+        if move < 0:
+            return np.nan, np.nan, np.nan
+        return float(self.end[move].real), float(self.end[move].imag), float(self.z_end[move])
+
+
 class Stretch(msgspec.Struct, frozen=True):
     """
     A polar section, or the blocks between two sections.
@@ -33,10 +54,6 @@ class Stretch(msgspec.Struct, frozen=True):
     section: number of the section, -1 outside.
     rows: rows of the trace.
     path: inside a section plane points on the part, with Z; outside Z + 1j*X, with C in the place of Z.
-    row: row of each move.
-    rapid: True for a move in rapid traverse.
-    feed_mode: FeedMode of each move.
-    feed: F of each move [mm per min or revolution].
     steps: the orders beside the moves.
     knows_z: Z is written anywhere; always True outside.
     c_scale: outside sections the length that stands for one degree of C in the path.
@@ -47,11 +64,7 @@ class Stretch(msgspec.Struct, frozen=True):
 
     section: int
     rows: Rows
-    path: SpacePath
-    row: Rows
-    rapid: Mask
-    feed_mode: States
-    feed: Floats
+    path: FedPath
     steps: Sequence[Step]
     knows_z: bool = True
     c_scale: float = 1.0
@@ -62,11 +75,7 @@ class Stretch(msgspec.Struct, frozen=True):
     @property
     def known(self) -> Stretch:
         """The same with its known moves alone."""
-        is_known = self.path.is_known
-        if is_known.all():
-            return self
-        columns = {name: getattr(self, name)[is_known] for name in ("path", "row", "rapid", "feed_mode", "feed")}
-        return msgspec.structs.replace(self, **columns)
+        return msgspec.structs.replace(self, path=self.path[self.path.is_known])
 
 
 def of_sections(trace: Trace, tool_center: ToolCenter, steps: Sequence[Step], terms: Terms) -> list[Stretch]:
@@ -93,14 +102,16 @@ def of_sections(trace: Trace, tool_center: ToolCenter, steps: Sequence[Step], te
             as_programmed = f"{missing_radius}: {to_give(trace.tools, trace.machine, row, 'radius')}"
             low, high = np.searchsorted(plain.section, (number, number + 1)).tolist()
             moves = plain[low:high]
-        path, knows_z = _turned(trace, moves, number)
-        if not path.is_known.all():
-            line = int(trace.blocks.line_in_file[moves.row[np.argmin(path.is_known)]])
+        turned, knows_z = _turned(trace, moves, number)
+        if not turned.is_known.all():
+            line = int(trace.blocks.line_in_file[moves.row[np.argmin(turned.is_known)]])
             needs = f"a position of line {line} is not known"
-        rows = np.flatnonzero(trace.mode.section == number)
-        section = _stretch(trace, number, rows, path, moves.row, steps_of.get(number, ()), terms, needs)
-        feed = section.feed * moves.plane_share if terms.is_rewritten else section.feed
-        result.append(msgspec.structs.replace(section, as_programmed=as_programmed, knows_z=knows_z, feed=feed))
+        path = _with_feeds(trace, turned, moves.row, terms, in_section=True)
+        if terms.is_rewritten:
+            path = msgspec.structs.replace(path, feed=path.feed * moves.plane_share)
+        rows, orders = np.flatnonzero(trace.mode.section == number), steps_of.get(number, ())
+        stretch = Stretch(number, rows, path, orders, knows_z, needs=needs, as_programmed=as_programmed)
+        result.append(stretch)
     return result
 
 
@@ -121,37 +132,18 @@ def _by_section(trace: Trace, steps: Sequence[Step]) -> dict[int, list[Step]]:
     return by_section
 
 
-def _stretch(
-    trace: Trace,
-    section: int,
-    rows: Rows,
-    path: SpacePath,
-    row: Rows,
-    steps: Sequence[Step],
-    terms: Terms,
-    needs: str = "",
-) -> Stretch:
-    per_minute = trace.feedrate.feed_mode[row] == FeedMode.PER_MINUTE
-    feed = np.where(per_minute, trace.feedrate.feed[row], trace.feedrate.feed_number[row])
-    rapid = trace.axes.motion[row] == Motion.RAPID
+def _with_feeds(trace: Trace, path: SpacePath, row: Rows, terms: Terms, *, in_section: bool) -> FedPath:
+    """Return a path with the rows of its moves, and with F and rapid traverse there but where they may change."""
+    mode = trace.feedrate.feed_mode[row]
+    feed = np.where(mode == FeedMode.PER_MINUTE, trace.feedrate.feed[row], trace.feedrate.feed_number[row])
+    rapid, z = trace.axes.motion[row] == Motion.RAPID, (path.z_start, path.z_end)
     if terms.changes:
         may_change = terms.may_change(trace, FEED)[row]
         feed, rapid = np.where(may_change, np.nan, feed), rapid & ~may_change
-        if section >= 0:
+        if in_section:
             is_level = terms.may_change(trace, Z)[row]
-            z_start, z_end = (np.where(is_level, 0.0, z) for z in (path.z_start, path.z_end))
-            path = msgspec.structs.replace(path, z_start=z_start, z_end=z_end)
-    return Stretch(
-        section=section,
-        rows=rows,
-        path=path,
-        row=row,
-        rapid=rapid,
-        feed_mode=trace.feedrate.feed_mode[row],
-        feed=feed,
-        steps=steps,
-        needs=needs,
-    )
+            z = np.where(is_level, 0.0, z[0]), np.where(is_level, 0.0, z[1])
+    return FedPath(*path.shape, *z, row, rapid, mode, feed)
 
 
 def _turned(trace: Trace, moves: Moves, section: int) -> tuple[SpacePath, bool]:
@@ -220,8 +212,8 @@ def outside(trace: Trace, steps: Sequence[Step], rows: Rows, terms: Terms) -> St
     of_stretch = SpacePath(start, end, center, kind, c_from * scale, c_to * scale)
     rows_kept = set(rows[~is_left_out].tolist())
     steps = [step for step in steps if step.row in rows_kept]
-    stretch = _stretch(trace, -1, rows, of_stretch, row, steps, terms, needs)
-    return msgspec.structs.replace(stretch, c_scale=scale, is_rewritten=terms.is_rewritten)
+    fed = _with_feeds(trace, of_stretch, row, terms, in_section=False)
+    return Stretch(-1, rows, fed, steps, c_scale=scale, is_rewritten=terms.is_rewritten, needs=needs)
 
 
 def _direction_behind(trace: Trace, row: int) -> float:

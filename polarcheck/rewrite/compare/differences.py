@@ -14,7 +14,7 @@ from polarcheck.geometry import polar
 from polarcheck.geometry.comparison.path_deviation import PathDeviation, path_deviation
 from polarcheck.geometry.plane_path import SpacePath
 from polarcheck.geometry.tolerances import ZERO
-from polarcheck.rewrite.compare.compared_sections import Stretch
+from polarcheck.rewrite.compare.compared_sections import FedPath, Stretch
 from polarcheck.rewrite.compare.comparison_report import Difference
 from polarcheck.rewrite.compare.order_differences import listed, order_differences
 from polarcheck.rewrite.compare.orders import Step
@@ -86,12 +86,12 @@ def _of_path(old: Part, new: Part, deviation: PathDeviation) -> Difference:
         missing = [part for part in (old, new) if not len(part.stretch.path)]
         name = "new" if missing[0] is new else "old"
         moving = old if missing[0] is new else new
-        line = moving.line(int(moving.stretch.row[0]))
+        line = moving.line(int(moving.stretch.path.row[0]))
         text = f"the {name} revision moves nothing here"
         return Difference(
             "path", text, old_line=line if moving is old else None, new_line=line if moving is new else None
         )
-    old_row, new_row = int(old.stretch.row[location.old_move]), int(new.stretch.row[location.new_move])
+    old_row, new_row = int(old.stretch.path.row[location.old_move]), int(new.stretch.path.row[location.new_move])
     at_old = _location(old, old_row, location.old, location.old_z)
     at_new = _location(new, new_row, location.new, location.new_z)
     largest = _largest(old, deviation)
@@ -145,7 +145,7 @@ def _number(part: Part, row: int, value: float) -> str:
 
 def depth_of(stretch: Stretch) -> float | None:
     """Return the least Z of the moves at feed of a section [mm]; None where it is not known."""
-    z = stretch.path.z_end[~stretch.rapid]
+    z = stretch.path.z_end[~stretch.path.rapid]
     return rounded(z.min()) if len(z) and stretch.knows_z and not np.isnan(z).any() else None
 
 
@@ -153,7 +153,7 @@ def _of_depth(old: Part, new: Part, tolerance: float) -> Iterator[Difference]:
     before, after = depth_of(old.stretch), depth_of(new.stretch)
     if old.stretch.section < 0 or before is None or after is None or abs(before - after) <= tolerance:
         return
-    rows = [int(part.stretch.row[~part.stretch.rapid][0]) for part in (old, new)]
+    rows = [int(part.stretch.path.row[~part.stretch.path.rapid][0]) for part in (old, new)]
     depths = [
         part.quantity(z, row).shown("length") for part, row, z in zip((old, new), rows, (before, after), strict=True)
     ]
@@ -192,7 +192,7 @@ def _feeds_along(old: Part, new: Part, terms: Terms) -> Iterator[Difference]:
     # The ends of moves that are the same up to the tolerance leave slivers between them.
     totals = [float(_lengths(part.stretch.path).sum()) for part in (old, new)]
     sliver = 10 * terms.tolerance + 2 * abs(totals[0] - totals[1])
-    differs = _feed_differs(old.stretch, before, new.stretch, after, terms.feed) & (length > sliver)
+    differs = feed_differs(old.stretch.path, before, new.stretch.path, after, terms.feed) & (length > sliver)
     groups: dict[tuple[str, str], list[tuple[int, int, float]]] = {}
     for index in np.flatnonzero(differs).tolist():
         first, second = int(before[index]), int(after[index])
@@ -200,14 +200,15 @@ def _feeds_along(old: Part, new: Part, terms: Terms) -> Iterator[Difference]:
     for (was, is_now), places in list(groups.items())[:_LISTED]:
         first, second, _ = places[0]
         distance = sum(piece for *_, piece in places)
-        row, new_row = int(old.stretch.row[first]), int(new.stretch.row[second])
+        row, new_row = int(old.stretch.path.row[first]), int(new.stretch.path.row[second])
         text = f"{was} has become {is_now} along {old.quantity(distance, row).shown('length')}"
         yield Difference("feed", text, was, is_now, "", old.line(row), new.line(new_row), rounded(distance))
     if len(groups) > _LISTED:
         yield Difference("feed", f"and {len(groups) - _LISTED} other changes of F")
 
 
-def _feed_differs(old: Stretch, first: Rows, new: Stretch, second: Rows, share: float) -> Mask:
+def feed_differs(old: FedPath, first: Rows, new: FedPath, second: Rows, share: float) -> Mask:
+    """Return a mask of the pairs of moves with another F, by more than a share, or rapid traverse in one alone."""
     rapid = old.rapid[first], new.rapid[second]
     feed, new_feed = old.feed[first], new.feed[second]
     is_known = ~np.isnan(feed), ~np.isnan(new_feed)
@@ -219,14 +220,14 @@ def _feed_differs(old: Stretch, first: Rows, new: Stretch, second: Rows, share: 
 def _feed(part: Part, move: int) -> str:
     """`F120 mm/min`, `F0.1 mm/rev`, `rapid traverse`, `F not known`, `no F`."""
     stretch = part.stretch
-    if stretch.rapid[move]:
+    if stretch.path.rapid[move]:
         return "rapid traverse"
-    feed = float(stretch.feed[move])
+    feed = float(stretch.path.feed[move])
     if np.isnan(feed):
-        return "no F" if part.trace.feedrate.feed_word[stretch.row[move]] < 0 else "F not known"
-    quantity = part.quantity(feed, int(stretch.row[move]))
+        return "no F" if part.trace.feedrate.feed_word[stretch.path.row[move]] < 0 else "F not known"
+    quantity = part.quantity(feed, int(stretch.path.row[move]))
     text = quantity.shown("feed")
-    if stretch.feed_mode[move] == FeedMode.PER_REVOLUTION:
+    if stretch.path.feed_mode[move] == FeedMode.PER_REVOLUTION:
         text = quantity.as_feed.shown("length", 2) + "/rev"
     return f"F{text}"
 
@@ -240,10 +241,10 @@ def _feeds_apart(old: Part, new: Part) -> Iterator[Difference]:
 
 
 def _changes_of_feed(stretch: Stretch) -> list[int]:
-    if not len(stretch.row):
+    if not len(stretch.path.row):
         return []
-    feed = np.nan_to_num(stretch.feed, nan=-1)
-    changes = (np.diff(feed) != 0) | (np.diff(stretch.rapid) != 0) | (np.diff(stretch.feed_mode) != 0)
+    feed = np.nan_to_num(stretch.path.feed, nan=-1)
+    changes = (np.diff(feed) != 0) | (np.diff(stretch.path.rapid) != 0) | (np.diff(stretch.path.feed_mode) != 0)
     return [0, *(np.flatnonzero(changes) + 1).tolist()]
 
 

@@ -49,13 +49,12 @@ def _features(sections: Sequence[Stretch]) -> Floats:
     """
     rows = []
     for section in sections:
-        is_known = section.path.is_known
-        path, rapid = section.path[is_known], section.rapid[is_known]
+        path = section.known.path
         if not len(path):
             rows.append([0.0] * 8)
             continue
         points = np.append(path.start[:1], path.end)
-        cuts = points if rapid.all() else points[1:][~rapid]
+        cuts = points if path.rapid.all() else points[1:][~path.rapid]
         box = [cuts.real.min(), cuts.real.max(), cuts.imag.min(), cuts.imag.max()]
         rows.append([*box, points[0].real, points[0].imag, path.z_end.min(), np.abs(np.diff(points)).sum() / 4])
     return np.array(rows, np.float64).reshape(-1, 8)

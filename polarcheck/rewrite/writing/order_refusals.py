@@ -8,13 +8,13 @@ from collections.abc import Collection, Iterator, Sequence
 import numpy as np
 
 from polarcheck.columns.trace import Trace
+from polarcheck.rewrite.compare.compared_sections import FedPath
 from polarcheck.rewrite.compare.comparison_report import Difference, SectionPair
 from polarcheck.rewrite.compare.order_differences import order_differences
 from polarcheck.rewrite.compare.order_meanings import meaning_steps, names_speeds, speed_steps
 from polarcheck.rewrite.compare.orders import Step, steps
 from polarcheck.rewrite.compare.terms import DWELL, EXACT, SPEED
 from polarcheck.rewrite.writing.outcome import Refusal
-from polarcheck.rewrite.writing.part_paths import PartPath
 
 #: Words of M, S and T in a text.
 _COMMANDS = re.compile(r"\b[MST]\d")
@@ -27,9 +27,7 @@ def refusal_of(difference: Difference, section: SectionPair | None = None) -> Re
     return Refusal(line, f"{difference.text}{where}")
 
 
-def changed_orders(
-    old: Trace, new: Trace, old_path: PartPath, new_path: PartPath, tolerance: float
-) -> Iterator[Refusal]:
+def changed_orders(old: Trace, new: Trace, old_path: FedPath, new_path: FedPath, tolerance: float) -> Iterator[Refusal]:
     """
     Yield what differs between the orders of two programs for the same machine, and where the tool is elsewhere on the
     part at an order.

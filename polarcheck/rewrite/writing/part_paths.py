@@ -6,16 +6,17 @@ The path of the tool on the part, in the polar mode and without it.
 
 from __future__ import annotations
 
+import msgspec
 import numpy as np
 
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, States, ranges
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, ranges
 from polarcheck.foundation.errors import TooHardError
 from polarcheck.foundation.states import Motion
 from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.plane_path import SpacePath
 from polarcheck.geometry.tolerances import CHORDS_OF_FILE
-from polarcheck.rewrite.compare.compared_sections import NOWHERE, Stretch, of_sections, outside
+from polarcheck.rewrite.compare.compared_sections import NOWHERE, FedPath, Stretch, of_sections, outside
 from polarcheck.rewrite.compare.terms import ANGLE, Terms
 from polarcheck.rewrite.writing.outcome import refused_at
 from polarcheck.rules.tables import Tables
@@ -24,37 +25,10 @@ from polarcheck.rules.tables import Tables
 CHORD = 1e-4
 
 
-class PartPath(SpacePath, frozen=True):
+def path_on_part(tables: Tables, first: int = 0, until: int | None = None, chord: float = CHORD) -> FedPath:
     """
-    Moves of the tool center in the frame of the part, in the order in which they run: a SpacePath whose x axis points
-    to C0.
-
-    row: int[n], rows of the trace.
-    rapid: bool[n], rapid traverse.
-    feed_mode: int16[n], FeedMode.
-    feed: float64[n], F in force [mm per min or revolution], NaN without one.
-
-    A block that moves X and C outside the mode is several moves: chords of its true path, a piece of a spiral, since
-    both axes move at constant rates. A move in rapid traverse is straight: only its ends count, since its axes need not
-    arrive together.
-    """
-
-    row: Rows
-    rapid: Mask
-    feed_mode: States
-    feed: Floats
-
-    def position(self, row: int) -> tuple[float, float, float]:
-        """Return x, y and z of the tool on the part before a row of the trace; NaN before the first move."""
-        move = int(np.searchsorted(self.row, row)) - 1
-        if move < 0:
-            return np.nan, np.nan, np.nan
-        return float(self.end[move].real), float(self.end[move].imag), float(self.z_end[move])
-
-
-def path_on_part(tables: Tables, first: int = 0, until: int | None = None, chord: float = CHORD) -> PartPath:
-    """
-    Return the path of the tool on the part in the rows from `first` up to `until`, not included.
+    Return the path of the tool on the part, whose x axis points to C0, in the rows from `first` up to `until`, not
+    included.
 
     chord: the largest distance of chords from the true path of a move of X and C [mm].
 
@@ -65,42 +39,39 @@ def path_on_part(tables: Tables, first: int = 0, until: int | None = None, chord
     # With ANGLE as its tolerance C stays in degrees.
     terms = Terms(ANGLE)
     sections = of_sections(trace, tables["tool_center"], (), terms)
-    parts = [_in_section(section) for section in sections if section.rows[0] < until and section.rows[-1] >= first]
+    parts = [section.path for section in sections if section.rows[0] < until and section.rows[-1] >= first]
     parts.append(_without_mode(outside(trace, (), np.arange(first, until), terms), chord))
-    moves = PartPath.concatenated(parts)
+    moves = FedPath.concatenated(parts)
     moves = moves[(moves.row >= first) & (moves.row < until)]
     moves = moves[np.argsort(moves.row, kind="stable")]
-    missing = np.append(moves.row[~moves.is_known], [section.row[0] for section in sections if section.as_programmed])
+    programmed = [section for section in sections if section.as_programmed]
+    missing = np.append(moves.row[~moves.is_known], [section.path.row[0] for section in programmed])
     missing = missing[(missing >= first) & (missing < until)]
     if len(missing):
-        reasons = [section.as_programmed for section in sections if section.as_programmed]
-        raise refused_at(trace, int(missing.min()), (reasons or ["where the tool is there is not known"])[0])
+        reason = programmed[0].as_programmed if programmed else "where the tool is there is not known"
+        raise refused_at(trace, int(missing.min()), reason)
     return moves
 
 
-def _in_section(section: Stretch) -> PartPath:
-    path = section.path
-    return PartPath(*path.shape, path.z_start, path.z_end, section.row, section.rapid, section.feed_mode, section.feed)
+def _without_mode(stretch: Stretch, chord: float) -> FedPath:
+    """
+    The moves outside of sections: chords between points that lie at even shares of X, Z and C, or of an arc.
 
-
-def _without_mode(stretch: Stretch, chord: float) -> PartPath:
-    """The moves outside of sections: chords between points that lie at even shares of X, Z and C, or of an arc."""
+    A move in rapid traverse is straight: only its ends count, since its axes need not arrive together.
+    """
     path = stretch.path  # Z + 1j*X, and C [deg] in the place of Z
     turn = np.radians(path.z_end - path.z_start)
-    count = _counts(path, turn, stretch.rapid, chord)
+    count = _counts(path, turn, path.rapid, chord)
     move, step = ranges(count)
     start, end = (_points_at(path, turn, move, share) for share in (step / count[move], (step + 1) / count[move]))
-    return PartPath(
+    return msgspec.structs.replace(
+        path[move],
         start=start[0],
         end=end[0],
         center=np.full(len(move), NOWHERE),
-        kind=np.where(stretch.rapid, Motion.RAPID, Motion.LINE).astype(np.int16)[move],
+        kind=np.where(path.rapid, Motion.RAPID, Motion.LINE).astype(np.int16)[move],
         z_start=start[1],
         z_end=end[1],
-        row=stretch.row[move],
-        rapid=stretch.rapid[move],
-        feed_mode=stretch.feed_mode[move],
-        feed=stretch.feed[move],
     )
 
 
