@@ -6,7 +6,7 @@ import functools
 import math
 import re
 from collections import Counter
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from itertools import groupby
 from typing import TYPE_CHECKING, TypeVar
 
@@ -33,6 +33,7 @@ from polarcheck.foundation.finding import (
     NotEvaluated,
     PolarSection,
     Undecided,
+    each_finding,
 )
 from polarcheck.foundation.patterns import lazy_pattern
 from polarcheck.program.execution.run import is_code
@@ -294,7 +295,7 @@ def report_of(engine: Engine, number: int = 0) -> FileReport:
         found = explained(engine, found, number, lambda trial: _Remainder(trial).less_regular)
     findings, silenced = divided(in_order(in_the_file(found, trace, engine.answered, engine.rows_in_calls)))
     missing = [entry for rule in engine.rules.values() for entry in remainder.missing(rule)]
-    bounds = bounds_not_reported(tables, _all(findings))
+    bounds = bounds_not_reported(tables, each_finding(findings))
     not_evaluated = list(dict.fromkeys((*bounds, *remainder.unexecuted, *missing, *engine.unlisted)))
     text = trace.text
     programs = [name for block, name in engine.heads if not text.source.part_of(int(text.blocks.line[block]))]
@@ -333,11 +334,11 @@ def _merged(first: tuple[str, FileReport], second: tuple[str, FileReport], of_te
     """
     (skip_off, off), (skip_on, on) = first, second
     shown_off, shown_on = (
-        {_position(finding) for finding in _all([*report.findings, *report.silenced])} for report in (off, on)
+        {_position(finding) for finding in each_finding([*report.findings, *report.silenced])} for report in (off, on)
     )
 
     fixes_off, fixes_on = (
-        {_position(finding): finding.fix for finding in _all([*report.findings, *report.silenced])}
+        {_position(finding): finding.fix for finding in each_finding([*report.findings, *report.silenced])}
         for report in (off, on)
     )
 
@@ -432,13 +433,6 @@ def _position(finding: Finding) -> _Position:
 def _skips(finding: Finding) -> bool:
     """True if the block begins with block skip, so that only one run executes it."""
     return _SKIP.match(finding.block) is not None
-
-
-def _all(findings: Sequence[Finding]) -> Iterator[Finding]:
-    """Yield the findings and those that follow from them."""
-    for finding in findings:
-        yield finding
-        yield from finding.follows
 
 
 #: A finding of this severity or worse fails its file; what fails a run is `fail_on`, which does not change verdicts.

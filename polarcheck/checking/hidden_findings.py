@@ -14,7 +14,7 @@ import numpy as np
 
 from polarcheck.checking.edits import applied, spans
 from polarcheck.checking.engine import Engine
-from polarcheck.foundation.finding import SEVERITIES, WARNING, Finding, Silenced, Undecided
+from polarcheck.foundation.finding import SEVERITIES, WARNING, Finding, Silenced, Undecided, each_finding
 from polarcheck.foundation.states import Motion, Side
 from polarcheck.program.execution.runs import runs
 from polarcheck.program.reading.source import read_source
@@ -101,7 +101,7 @@ def is_told(finding: Finding) -> bool:
 
 def symptoms(findings: Sequence[Finding]) -> set[Symptom]:
     """Where rules fire, in findings and those that follow from them."""
-    return {(one.rule, one.line) for finding in findings for one in (finding, *finding.follows)}
+    return {(finding.rule, finding.line) for finding in each_finding(findings)}
 
 
 def _is_gone(finding: Finding, before: set[Symptom], after: set[Symptom]) -> bool:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import enum
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import msgspec
 from msgspec import UNSET, UnsetType
@@ -100,6 +100,13 @@ class Finding(msgspec.Struct, frozen=True, kw_only=True):
     def full_message(self) -> str:
         """The message, behind the channel in a file with several."""
         return f"{self.channel}: {self.message}" if self.channel else self.message
+
+
+def each_finding(findings: Iterable[Finding]) -> Iterator[Finding]:
+    """Yield the findings, and behind each those that follow from it."""
+    for finding in findings:
+        yield finding
+        yield from finding.follows
 
 
 class Undecided(Finding, frozen=True, kw_only=True):

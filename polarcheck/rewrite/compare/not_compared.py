@@ -13,7 +13,7 @@ from polarcheck.checking.not_evaluated import bounds_not_reported, unexecuted, u
 from polarcheck.columns.trace import Trace
 from polarcheck.columns.words.macro_faults import reason_of
 from polarcheck.columns.words.unknown_words import UnknownItem
-from polarcheck.foundation.finding import SEVERITIES, Finding, Severity
+from polarcheck.foundation.finding import SEVERITIES, Finding, Severity, each_finding
 from polarcheck.foundation.patterns import lazy_pattern
 from polarcheck.rewrite.compare.comparison_report import NotCompared
 from polarcheck.rewrite.compare.differences import Part
@@ -90,8 +90,7 @@ def findings_of(
 ) -> list[Finding]:
     """Return the findings of a check from a severity up, also those that follow from another one."""
     report = check_runs(runs, list(load_all().values()), severities, inline)
-    findings = [flattened for finding in report.findings for flattened in (finding, *finding.follows)]
-    return [finding for finding in findings if SEVERITIES[finding.severity] >= lowest]
+    return [finding for finding in each_finding(report.findings) if SEVERITIES[finding.severity] >= lowest]
 
 
 def _passed_over(trace: Trace) -> Counter[str]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import defaultdict
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Collection, Sequence
 
 import msgspec
 
@@ -12,7 +12,7 @@ from polarcheck.checking.check import check_runs, read
 from polarcheck.checking.engine import LISTED
 from polarcheck.checking.settings import Settings
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.finding import SEVERITIES, FileReport, Finding
+from polarcheck.foundation.finding import SEVERITIES, FileReport, Finding, each_finding
 from polarcheck.foundation.time_limit import seconds_for, time_limit
 from polarcheck.program.machines.axis_table import FIRST_NAMED
 from polarcheck.program.reading import source
@@ -105,15 +105,9 @@ def _worse(before: FileReport, after: FileReport, rules: Collection[str]) -> str
 def _by_rule(report: FileReport) -> dict[str, list[Finding]]:
     """Return all findings by rule, the worst first; including those that follow from others and silenced ones."""
     by_rule = defaultdict[str, list[Finding]](list)
-    for finding in _all([*report.findings, *report.silenced]):
+    for finding in each_finding([*report.findings, *report.silenced]):
         by_rule[finding.rule].append(finding)
     return {rule: sorted(findings, key=_rank, reverse=True) for rule, findings in by_rule.items()}
-
-
-def _all(findings: Iterable[Finding]) -> Iterator[Finding]:
-    for finding in findings:
-        yield finding
-        yield from finding.follows
 
 
 def _rank(finding: Finding) -> int:
