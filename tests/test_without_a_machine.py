@@ -9,6 +9,8 @@ from cases import looped
 from programs import report_of
 
 from polarcheck.checking import survey
+from polarcheck.program.reading import translation
+from polarcheck.rules import other_machine
 
 OKUMA = "O1000\nT0808\nSB=1500 M13\nG94 G0 X60 Z2 C0\n{}\nM2\n"
 SIEMENS = "{}\nG94 S2=2000 M2=3\nG0 X60 Z5 C0\n{}\nG1 X40 Y0 F200\nX30 Y10\n{}\nM30\n"
@@ -108,3 +110,19 @@ def test_a_word_of_another_control_is_named(block: str, machine: str, hint: str)
     report = report_of(f"O1\nT0101\n{block}\nG0 X60. Z5.\nM30\n", machine)
     (finding,) = (one for one in report.findings if one.rule == "bad-number")
     assert finding.message.endswith(f": no digits after the address{hint and '; '}{hint}")
+
+
+def test_a_long_line_is_searched_for_words_near_the_fault_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A line of 12 MB would be searched for each word of each machine."""
+    lengths = []
+
+    def stands_in(text: str, word: str) -> bool:
+        lengths.append(len(text))
+        return translation.stands_in(text, word)
+
+    monkeypatch.setattr(other_machine, "stands_in", stands_in)
+    report = report_of(f"O1\nT0101\n{'X1.' * 9000} WAITM( ) {'X1.' * 9000}\nG0 X60. Z5.\nM30\n", "fanuc")
+    (finding,) = (one for one in report.findings if one.rule == "bad-number")
+    assert "; WAITM is a word of siemens-iso" in finding.message
+    assert lengths
+    assert max(lengths) < 10_000

@@ -21,6 +21,8 @@ _FAULTS = {
     "BLANK_INSIDE": "a blank inside the number",
     "WRONG_DASH": "a dash that is not a minus sign",
 }
+#: Characters before and behind a number that are searched for words of other controls; lines by hand are shorter.
+_NEAR = 4000
 
 
 @rule(
@@ -86,7 +88,9 @@ def _of_other_control(hit: Hit, words: Words, machine: Machine, other_machine: O
     if other_machine.text:
         return other_machine.text
     text, start = hit.trace.text, int(words.start[hit.index])
-    line = without_comments(text.source.line_text(int(text.blocks.line[words.block[hit.index]])))
+    number = int(text.blocks.line[words.block[hit.index]])
+    first = max(start - int(text.source.line_starts[number - 1]) - _NEAR, 0)
+    line = without_comments(text.source.line_text(number)[first : first + 2 * _NEAR])
     if words_of(machine, line):
         return ""
     rest = text.source.excerpt(start, start + len(line)).upper()
