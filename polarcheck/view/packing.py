@@ -23,7 +23,7 @@ _DIGITS = 7
 #: Whole numbers below it are exact in a script.
 _EXACT = 2**52
 #: The fastest level of zlib that takes less than a tenth more than the best.
-_LEVEL = 6
+_LEVEL = 5
 #: Characters that could end a script in HTML, or that a script must not contain.
 _IN_SCRIPT = str.maketrans({mark: f"\\u{ord(mark):04x}" for mark in "<>&\u2028\u2029"})
 
