@@ -49,7 +49,7 @@ class Client:
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
         self.ask("shutdown", None)
         self.tell("exit", None)
-        self.process.wait(10)
+        self.process.communicate(timeout=10)
 
     def send(self, **body: Any) -> None:
         assert self.process.stdin is not None
