@@ -192,3 +192,15 @@ def test_one_of_four_pockets_that_is_cut_in_air_is_one_finding(without_depth: in
     assert [finding.rule for finding in found] == ["cut-in-air"], found
     assert "at Z2 of line" in found[0].message
     assert "a Z word for the depth is missing" in found[0].message
+
+
+@pytest.mark.parametrize("lost", ["G1 X70. F1000", "G1 X70. F1000/Z-4. F200", "Z-4. F200"])
+def test_the_first_blocks_of_a_section_that_are_lost_are_one_finding(lost: str) -> None:
+    program = (
+        "O1/G21 G98 G40/T0101/G97 S3000 M13/G28 H0/G0 X80. Z2. C0/G12.1/G1 X70. F1000/Z-4. F200/G42 X36. F150/C14./"
+        "G3 X28. C18. R4./G1 X-28./G3 X-36. C14. R4./G1 C-14./G3 X-28. C-18. R4./G1 X28./G3 X36. C-14. R4./G1 C0/"
+        "G40 X70./Z2. F1000/G13.1/G0 X100. Z50./M5/M30"
+    )
+    for text, count in ((program, 0), (program.replace(f"/{lost}/", "/"), 1)):
+        report = report_of(text.replace("/", "\n"), "fanuc-30i", CUTTER)
+        assert len([finding for finding in report.findings if finding.severity != "note"]) == count, report.findings

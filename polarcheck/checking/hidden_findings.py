@@ -136,10 +136,14 @@ def _repairs(engine: Engine, finding: Finding) -> Iterator[list[Replace]]:
     """What may be written for a finding: its fix, or another word in the place of that at fault."""
     trace = engine.trace
     run, machine, source = trace.run, trace.machine, trace.text.source
+    doubts = {what for what, _ in engine.rules[finding.rule].doubts}
+    rows = np.flatnonzero((trace.blocks.line == finding.line) & (trace.mode.section >= 0))
+    is_rapid = trace.blocks.codes(*machine.codes("rapid"))
+    if "rapid" in doubts and not trace.mode.given_in_section(is_rapid)[rows[:1]].all():
+        return  # G0 stands above the section: the block of which G1 is missing may have had more
     if finding.fix is not None:
         yield spans(source, finding.fix)
         return
-    rows = np.flatnonzero((trace.blocks.line == finding.line) & (trace.mode.section >= 0))
     if not len(rows) or not is_plain(run, int(rows[0])):
         return
     row = int(rows[0])
@@ -147,7 +151,6 @@ def _repairs(engine: Engine, finding: Finding) -> Iterator[list[Replace]]:
     first, last = (start + column - 1 for column in (finding.column, finding.end_column))
     words = words_of(run, row)
     at = [word for word in words if first <= int(run.words.start[word]) < last]
-    doubts = {what for what, _ in engine.rules[finding.rule].doubts}
     if "rapid" in doubts and trace.axes.motion[row] == Motion.RAPID:
         codes = np.flatnonzero(run.words.start == trace.modal.motion_word[row])
         yield from ([in_place_of(run, int(word), next(iter(machine.codes("line"))))] for word in codes[:1])
