@@ -290,7 +290,6 @@ def test_g91_that_g90_takes_back_is_missing() -> None:
     assert found[0].line == len(HEAD) + 2
 
 
-SQUARE = ["G42 X37.5 C0 F200", "C18.75", "X-37.5 C18.75", "X-37.5 C-18.75", "X37.5 C-18.75", "C0"]
 #: Rounded corners of several radii, and no two sides of one length.
 FREE = [
     *("G42 X27.919 C1.041 F120", "C5.466", "G3 X23.806 C8.962 R4.", "G1 X-1.119 C15.889", "G3 X-7.229 C15.396 R2.5"),
@@ -304,7 +303,6 @@ KEYED = ["G42 X39. C0 F200", "C11.258", "X0 C22.517", "X-35. C12.413", "C-12.413
 @looped(
     ("contour", "right", "wrong", "words"),
     [
-        (SQUARE, "X-37.5 C18.75", "X-37.5 C18.57", ["with C18.75 "]),
         (FREE, "G3 X-35.02 C-1.181 R1.5", "G3 X-35.02 C-0.591 R1.5", ["with C-1.182 its arcs would be tangent"]),
         # Either word would make it its own mirror image.
         (KEYED, "X0 C22.517", "X0", ["with C-11.258", "or with C22.517 in line"]),

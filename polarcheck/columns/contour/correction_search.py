@@ -33,8 +33,8 @@ _ODD_OF = 6
 _MOST_TRIALS, _ENDS, _GAPS = 80, 3, 3
 #: Edits that are looked at; how much less they must leave to chance, without and with symmetry; blocks of such a path.
 _MOST_EDITS, _LEAST_GAIN, _GAIN_ALONE, _FEWEST_BLOCKS = 16, 0.5, 3.8, 6
-#: The gain of a slip that is often made, and makes all arcs tangent; of one that makes a square, and its images.
-_GAIN_IF_COMMON, _GAIN_OF_SQUARE, _OF_SQUARE = 3.0, 2.0, 8
+#: The gain of a slip that is often made, and makes all arcs tangent.
+_GAIN_IF_COMMON = 3.0
 #: By how much less a second one may explain, for both to be named [coordinates].
 _AS_LIKELY = 0.5
 #: The gain with more symmetry, by which so many numbers more are fixed.
@@ -195,8 +195,6 @@ class _Search:
         """An edit closes the contour, or makes all its arcs tangent or the contour more symmetric, and is no chance."""
         if likely.gain >= _GAIN_IN_SYMMETRY and self._is_more_symmetric(symmetry):
             return True
-        if likely.edit.is_plain and likely.gain >= _GAIN_OF_SQUARE and symmetry.images >= _OF_SQUARE:
-            return self.written is None or self.written.images < symmetry.images
         is_whole = likely.smooths or (likely.closes and self.written is None)
         least = _GAIN_IF_COMMON if likely.smooths and likely.edit.is_common else _GAIN_ALONE
         return is_whole and likely.gain >= least and len(self.loop.turns) >= _FEWEST_BLOCKS

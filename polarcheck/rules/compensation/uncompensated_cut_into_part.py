@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     gouges=True,
     once="loop",
     follows={
+        "motion": ("rapid-in-polar",),
         "X before": ("rapid-through-part",),
         "tool call": ("rapid-plunge-into-stock",),
     },

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     "G0 cannot be used in the polar mode; {instead_of_rapid}",
     at=("rapid",),
     follows={"block": ("code-not-allowed-in-polar",), "section": ("degrees-in-polar",)},
-    doubts=(("rapid", "motion"), ("position", "motion")),
+    doubts=(("rapid", "motion"),),
 )
 def rapid_in_polar(
     blocks: ExecutedBlocks, modal: ModalStates, axes: PlaneAxes, mode: PolarMode, angles: Angles
