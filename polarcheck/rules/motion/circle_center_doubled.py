@@ -61,7 +61,7 @@ def circle_center_doubled(full_circles: FullCircles) -> Mask:
         X0 C20.
         Z-4. F40
         G41 X12. F80
-        G3 I-7.           (expect: circle-center-doubled)
+        G3 I-66.          (expect: circle-center-doubled)
         G1 G40 X0.
         Z2.
         G13.1
