@@ -20,7 +20,7 @@ TURNING = "T0202\nG97 S2000 M3\nG0 X22. Z-0.5\nG1 X-1. F100\nG0 X20. Z-1.\nG1 X1
 def milling(*depths: str, begin: str = "-1.", retract: str = "-1.", rapid: bool = False) -> str:
     passes = "".join(f"Z{depth} F300\n{CONTOUR}" for depth in depths)
     down = f"G0 X14.\nZ{depths[0]}\nG1 X60. F1500\n" if rapid else ""
-    return f"T0101\nG0 X60. Z{begin} C0\n{down}G12.1\nG1 X60. C0 F1500\n{passes}Z{retract}\nG13.1\n"
+    return f"T0101 G97 S2000 M13\nG0 X60. Z{begin} C0\n{down}G12.1\nG1 X60. C0 F1500\n{passes}Z{retract}\nG13.1\n"
 
 
 def program(*parts: str) -> str:

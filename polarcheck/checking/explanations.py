@@ -204,8 +204,10 @@ class _Search:
         """
         Two edits that remove all symptoms of a path together; of two pairs that are as likely, the edit of both.
 
-        What is found with the first of them stands there because of the second.
+        What is found with the first of them stands there because of the second. Of a few blocks a pair makes anything.
         """
+        if len(loop.turns) < _BLOCKS_OF_CODE:
+            return []
         whole: list[tuple[float, dict[Edit, tuple[Likely, list[Replace]]]]] = []
         for pair in likely_pairs(self.trace, loop, _PAIRS):
             gain = sum(likely.gain for likely in pair)
