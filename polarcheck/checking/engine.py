@@ -110,7 +110,7 @@ class Engine:
 
     def _evaluated(self, rule: Rule) -> Hits:
         if not self.tables.has(rule.only_with):
-            return Hits(np.zeros(0, np.bool_))
+            return self._empty(0)
         hits = rule.hits(self.tables)
         if self.trace.run.unknown_words and not rule.of_text and hits.mask.any():
             rows = places.rows(rule.over, self.tables)
@@ -122,9 +122,11 @@ class Engine:
 
     def _shared_if_empty(self, hits: Hits) -> Hits:
         """Replace hits that are all False by a shared empty object: their values are not needed."""
-        if hits.mask.any():
-            return hits
-        count = len(hits.mask)
+        # For a few rows, `any` takes ten times as long.
+        return hits if np.count_nonzero(hits.mask) else self._empty(len(hits.mask))
+
+    def _empty(self, count: int) -> Hits:
+        """The hits of all rules that hit none of so many elements."""
         if count not in self._empty_hits:
             self._empty_hits[count] = Hits(np.zeros(count, np.bool_))
         return self._empty_hits[count]

@@ -28,7 +28,7 @@ from polarcheck.columns.filling import before
 from polarcheck.columns.trace import Trace
 from polarcheck.columns.words.macro_faults import ENDLESS_LOOP, Faults, reason_of
 from polarcheck.columns.words.unknown_words import UnknownItem, UnknownWords
-from polarcheck.foundation.arrays import Floats, Mask, Rows
+from polarcheck.foundation.arrays import Floats, Mask, Rows, first_of_each
 from polarcheck.foundation.errors import TooHardError
 from polarcheck.foundation.finding import Finding, NotEvaluated, Undecided
 from polarcheck.geometry.tolerances import CHORDS, CROSSINGS, FARTHEST
@@ -275,9 +275,9 @@ def _unknown_columns(tables: Tables, rule: Rule) -> Iterator[Missing]:
         return
     where, columns = called(needs, tables, {})
     # Sections that are not followed have an entry of their own.
-    where = where & trace.mode.is_followed & ~trace.compensation.sides_are_open
-    for kind, (need, column) in enumerate(columns.items()):
-        rows = np.flatnonzero(np.isnan(column) & where)
+    judged = np.flatnonzero(where & trace.mode.is_followed & ~trace.compensation.sides_are_open)
+    for kind, (need, column) in enumerate(columns.items()) if len(judged) else ():
+        rows = judged[np.isnan(column[judged])]
         if not len(rows):
             continue
         if need == "rate":
@@ -292,10 +292,9 @@ def _unknown_columns(tables: Tables, rule: Rule) -> Iterator[Missing]:
 
 
 def _groups(values: Rows) -> tuple[Rows, Rows]:
-    """Return the first index and the count of each value. np.unique would import numpy.ma, which is slow."""
-    order = np.argsort(values, kind="stable")
-    begins = np.flatnonzero(np.append(True, np.diff(values[order]) != 0)) if len(order) else order
-    return order[begins], np.diff(np.append(begins, len(order)))
+    """Return the first index and the count of each value, by rising value."""
+    first, number = first_of_each(values)
+    return first, np.bincount(number)
 
 
 def _c_axis_without_limit(tables: Tables, rule: Rule) -> Iterator[Missing]:

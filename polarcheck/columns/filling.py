@@ -20,9 +20,11 @@ def fill_down(values: NDArray[Scalar], written: Mask, before: object) -> NDArray
     start = np.array([before], values.dtype)
     written_rows = written.nonzero()[0]
     if len(written_rows) * _SELDOM < len(values):
-        if len(written_rows) and not written_rows[0] and is_uniform(values[written_rows]) and values.dtype != np.bool_:
+        if len(written_rows) and not written_rows[0] and is_uniform(values[written_rows]):
+            if values.dtype == np.bool_:
+                return np.full(len(values), values[0])
             return repeated(values[0], len(values))
-        count = np.append(written_rows, len(values))
+        count = np.concatenate((written_rows, (len(values),)))
         count[1:] -= written_rows
         return np.repeat(np.concatenate((start, values[written_rows])), count)
     last = np.maximum.accumulate(np.where(written, np.arange(1, len(values) + 1), 0))

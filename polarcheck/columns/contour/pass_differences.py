@@ -122,6 +122,8 @@ class PassDifferences(Columns, frozen=True):
         passes, trace = self.passes, self.trace
         first, walls = passes.row[passes.first], np.flatnonzero(passes.is_wall)
         side, z, section = trace.compensation.side[first], trace.path.z[first], trace.mode.section[first]
+        if not {Side.LEFT, Side.RIGHT} <= {*side[walls].tolist()}:
+            return []
         shapes = [{*passes.shape[walls[side[walls] == one]].tolist()} for one in (Side.LEFT, Side.RIGHT)]
         begins = np.flatnonzero(trace.compensation.side != trace.compensation.side_before)
         differences = []
@@ -176,7 +178,7 @@ class PassDifferences(Columns, frozen=True):
         that do so but for their first and last moves, as where a finishing pass begins beside a roughing pass.
         """
         passes = self.passes
-        if len(passes.first) < 2:
+        if not self._are_several:
             return []
         whole = _Stretch(passes.first, passes.last, passes.shape)
         groups = [(whole, group) for group in self._with_ends_alike(whole)]
