@@ -125,7 +125,6 @@ def test_override_on_a_line_in_closed_form() -> None:
     assert dynamics.move_time[move] == pytest.approx(seconds)
     assert dynamics.true_feed[move] == pytest.approx(turn)
     assert dynamics.c_feed[move] == pytest.approx(3240)
-    assert dynamics.c_share[move] == pytest.approx(0.9)
     plain = dynamics_of(program, changes={"limits": {"c_feed": 3600}})
     assert plain.move_time[move] == pytest.approx(60 * 20 / 1000)
 

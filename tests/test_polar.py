@@ -475,16 +475,9 @@ def test_unknown_feed_and_no_feed() -> None:
 
 @few
 @given(point, st.floats(-720, 720))
-def test_to_machine_and_back(place: complex, entry: float) -> None:
-    x, c_angle = polar.to_machine(np.array([place]), entry)
-    assert x[0] >= 0
-    assert abs(polar.to_plane(x, c_angle, entry)[0] - place) < 1e-9
-
-
-def test_to_machine() -> None:
-    x, c_angle = polar.to_machine(np.array([3 + 4j, -5, 5, -2j, 0]), 60.0)
-    assert list(x) == [5, 5, 5, 2, 0]
-    assert c_angle == pytest.approx([60 + math.degrees(math.atan2(4, 3)), 240, 60, -30, 60])
+def test_points_of_x_and_c(place: complex, entry: float) -> None:
+    c_angle = entry + math.degrees(math.atan2(place.imag, place.real))
+    assert abs(polar.to_plane(np.array([abs(place)]), np.array([c_angle]), entry)[0] - place) < 1e-9
 
 
 def c_angles(*moves: Move, section: Any = None, entry: Any = (0.0,)) -> tuple[list[float], list[float]]:

@@ -147,17 +147,8 @@ def c_sweep(start: Points, end: Points, center: Points, kind: States) -> Floats:
     return np.degrees(turn)
 
 
-def to_machine(point: Points, entry: Floats | float) -> tuple[Floats, Floats]:
-    """
-    X as a radius [mm], never negative, and C [deg] of plane points; `entry` is C on the plane's +X side.
-
-    C is entry - 180 (not included) to entry + 180; at the center itself it is entry.
-    """
-    return np.abs(point), np.asarray(entry + np.degrees(np.angle(point)))
-
-
 def to_plane(x: Floats, c_angle: Floats, entry: Floats | float) -> Points:
-    """Plane points of X [mm, radius] and C [deg]; turns back what `to_machine` does."""
+    """Plane points of X [mm, radius] and C [deg]; `entry` is C on the plane's +X side."""
     return np.asarray(x * np.exp(1j * np.radians(c_angle - entry)))
 
 

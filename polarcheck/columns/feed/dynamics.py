@@ -132,11 +132,6 @@ class Dynamics(Columns, frozen=True):
         return self._largest(self.moves.x_acceleration, "x_acceleration")
 
     @cached_property
-    def c_share(self) -> Floats:
-        """Rate of C as a share of the limit of the machine, 1 at it; NaN where either is not known."""
-        return np.asarray(self.c_feed / self.trace.machine.limits.c_feed)
-
-    @cached_property
     def move_time(self) -> Floats:
         """Time of each move [s]; NaN where it is not known. The time of a rapid belongs to its row."""
         time = self.time_without_override.copy()

@@ -131,10 +131,6 @@ class AirCuts(Columns, frozen=True):
         return reason
 
     @cached_property
-    def _highest(self) -> Floats:
-        return self._of_section(self.trace.path.z, self.walls, np.maximum, -np.inf)
-
-    @cached_property
     def _lowest(self) -> Floats:
         return self._of_section(self.trace.path.z, self.walls, np.minimum, np.inf)
 

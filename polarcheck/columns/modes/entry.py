@@ -225,11 +225,6 @@ class Entry(Columns, frozen=True):
         calls = last_row(tools.calls_tool, trace.blocks.starts)[trace.mode.sections.enter]
         return tools.takes_offset_of_other & trace.blocks.mask_of(calls[calls >= 0])
 
-    @property
-    def stock_diameter(self) -> Floats:
-        """Diameter of the stock [mm]; NaN if the job states none."""
-        return self.trace.lengths.stock_diameter
-
     @cached_property
     def is_flat_and_radial(self) -> Mask:
         """The job says of the tool in force that it is a flat end mill that points at the outer diameter."""

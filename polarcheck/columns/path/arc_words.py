@@ -6,7 +6,7 @@ import numpy as np
 
 from polarcheck.columns.contour.passes import Passes
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Columns, Mask, Rows, cached_property
+from polarcheck.foundation.arrays import Columns, Mask, cached_property
 from polarcheck.foundation.states import Motion
 from polarcheck.geometry.plane import angle_between
 from polarcheck.program.machines.code_tables import code_set
@@ -94,8 +94,3 @@ class ArcWords(Columns, frozen=True):
         if not turns_known or min(turns_known) * max(turns_known) < 0:
             return None
         return Motion.CCW if turns_known[0] > 0 else Motion.CW
-
-    @cached_property
-    def motion_word(self) -> Rows:
-        """The G1 whose lines have such words: the same number for all that one forgotten code explains."""
-        return np.where(self.rows, self.trace.modal.motion_word, -1)
