@@ -9,6 +9,11 @@ from test_explanations import CENTERED, HEAD, ROUNDED, program
 
 #: Blocks that are wrong, by what stands there in the sound contour, and what is to be written.
 Slips = dict[str, tuple[str, str]]
+#: A hexagon turned by 15 degrees, which begins in the middle of a side.
+TURNED = [
+    *("G41 X21.25 C-5.694", "X17.963 C-17.963", "X-6.575 C-24.538", "X-24.538 C-6.575", "X-17.963 C17.963"),
+    *("X6.575 C24.538", "X24.538 C6.575", "X21.25 C-5.694"),
+]
 #: Two words that no single edit makes up for.
 PAIRS: list[tuple[list[str], Slips]] = [
     (ROUNDED, {"C7.": ("C17.", "C7."), "G3 X-34. C-10. R3.": ("G3 X-34. C-100. R3.", "C-10.")}),
@@ -24,11 +29,6 @@ HIDING: list[tuple[str, str, str]] = [
 ]
 
 
-def lines_of(contour: list[str], slips: dict[str, str]) -> dict[int, str]:
-    """The lines of blocks in the program, with what stands there."""
-    return {len(HEAD) + contour.index(block) + 1: block for block in slips}
-
-
 @pytest.mark.ci
 @looped(("contour", "slips"), PAIRS)
 def test_each_of_two_wrong_words_is_told_with_its_value(contour: list[str], slips: Slips) -> None:
@@ -37,6 +37,27 @@ def test_each_of_two_wrong_words_is_told_with_its_value(contour: list[str], slip
     needed = {len(HEAD) + contour.index(block) + 1: word for block, (_, word) in slips.items()}
     assert {finding.line for finding in findings} == set(needed)
     assert all(f"with {needed[finding.line]} " in finding.message for finding in findings)
+
+
+#: Two wrong corners of it, by the words that are meant.
+CORNERS: list[Slips] = [
+    {"X6.575 C24.538": ("X13.15 C24.538", "X6.575"), "X24.538 C6.575": ("X49.076 C6.575", "X24.538")},
+    {"X-24.538 C-6.575": ("X-24.538 C-65.75", "C-6.575"), "X24.538 C6.575": ("X42.538 C6.575", "X24.538")},
+]
+
+
+@looped("slips", CORNERS)
+def test_two_corners_beside_a_regular_polygon_are_told_with_their_words(slips: Slips) -> None:
+    head = [line.replace("X60. Z2.", "X80. Z2.").replace("G1 X50.", "G1 X31.876 C-8.541") for line in HEAD]
+    contour = [slips.get(line, (line, ""))[0] for line in TURNED]
+    lines = [*head, *contour, "G40 X31.876 C-8.541 F1500", "Z2.", "G13.1", "M30"]
+    findings = report_of("\n".join(lines) + "\n", "mitsubishi-m700", "1:radius=2").findings
+    needed = {len(HEAD) + TURNED.index(block) + 1: word for block, (_, word) in slips.items()}
+    assert {finding.line: needed[finding.line] in finding.message for finding in findings} == dict.fromkeys(
+        needed, True
+    )
+    first, second = needed
+    assert f"with {needed[first]}, and {needed[second]} in line {second}, it" in findings[0].message
 
 
 @looped(("block", "wrong", "rule"), HIDING)

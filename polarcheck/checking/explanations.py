@@ -87,10 +87,17 @@ def explained(engine: Engine, findings: list[Finding], number: int, less_regular
     source = engine.trace.text.source
     if REPORTS not in engine.rules or source.parts or source.channel or len(engine.trace) > _MOST_ROWS:
         return findings
-    findings, edits = _explained(engine, findings, number, less_regular)
+    findings, partly, whole = _explained(engine, findings, number, less_regular)
+    clear = {source.line_of(start) for start, _, _ in whole}
+    hiding = [finding for finding in findings if finding.line not in clear]
     try:
         return with_hidden(
-            engine, findings, number, edits, lambda trial: _explained(trial, trial.findings(), number, less_regular)[0]
+            engine,
+            findings,
+            hiding,
+            number,
+            partly,
+            lambda trial: _explained(trial, trial.findings(), number, less_regular)[0],
         )
     except TooHardError:
         return findings
@@ -98,17 +105,19 @@ def explained(engine: Engine, findings: list[Finding], number: int, less_regular
 
 def _explained(
     engine: Engine, findings: list[Finding], number: int, less_regular: LessRegular
-) -> tuple[list[Finding], list[Replace]]:
-    """The findings with those that one edit explains listed under it; the edits of paths that leave others."""
+) -> tuple[list[Finding], list[Replace], list[Replace]]:
+    """The findings, with those that one edit explains under it; the edits that leave others, and those that do not."""
     trace = engine.trace
     symptoms = [finding for finding in findings if _is_symptom(engine, finding)]
-    edits: list[Replace] = []
+    partly: list[Replace] = []
+    whole: list[Replace] = []
     if symptoms:
         search = _Search(engine, number)
         try:
             for explanation in search.explanations(symptoms):
                 findings = _under(engine, findings, explanation)
-                edits += [] if explanation.is_whole else explanation.edits
+                edits = whole if explanation.is_whole else partly
+                edits += explanation.edits
         except TooHardError:
             pass  # what was found before stands
     lines = {line for finding in findings for line in (finding.line, *(other.line for other in finding.follows))}
@@ -117,7 +126,7 @@ def _explained(
         if lines.isdisjoint(trace.blocks.line[rows[0] : rows[-1] + 1].tolist()):
             unexplained.append(_new(engine, correction))
             lines.add(unexplained[-1].line)
-    return [*findings, *unexplained], edits
+    return [*findings, *unexplained], partly, whole
 
 
 def _is_symptom(engine: Engine, finding: Finding) -> bool:
@@ -184,7 +193,10 @@ class _Search:
             elif found is not None and likely.is_clear:
                 partly.append(found)
         rules = {rule for rule, line in self.symptoms if line in own}
-        if not whole and len(rules) >= _RULES_OF_CODE and len(loop.turns) >= _BLOCKS_OF_CODE:
+        # A path that two numbers make regular has no code at the wrong place.
+        is_of_two = sum(rule == REPORTS and line in own for rule, line in self.symptoms) > 1
+        is_of_code = not is_of_two and len(rules) >= _RULES_OF_CODE and len(loop.turns) >= _BLOCKS_OF_CODE
+        if not whole and is_of_code:
             lines = {line for rule, line in self.symptoms if line in own and rule not in _OF_RATES}
             rows = np.flatnonzero(np.isin(self.trace.blocks.line, [*lines]))
             whole = self._by_codes(ramp_edits(self.trace, loop.row[1:], rows), own, others, _RULES_OF_CODE)
@@ -202,7 +214,7 @@ class _Search:
 
     def _pair(self, loop: WrittenLoop, own: set[int], others: set[int]) -> list[_Explained]:
         """
-        Two edits that remove all symptoms of a path together; of two pairs that are as likely, the edit of both.
+        Two edits that remove all symptoms of a path together, or the one of them that is clear and in all likely pairs.
 
         What is found with the first of them stands there because of the second. Of a few blocks a pair makes anything.
         """
@@ -217,11 +229,16 @@ class _Search:
             found = self._tried(pair[0], 0, [*chain(*edits)], others) if all(edits) else None
             if found is not None and own.isdisjoint(line for _, line in found.left):
                 whole.append((gain, {one.edit: (one, edit) for one, edit in zip(pair, edits, strict=True)}))
-        sure = [edit for edit in (whole[0][1] if whole else ()) if all(edit in pair for _, pair in whole)]
+        pairs = [pair for _, pair in whole]
+        sure = [
+            edit
+            for edit in (pairs[0] if pairs else ())
+            if all(edit in pair and pair[edit][0].is_clear for pair in pairs)
+        ]
         explained: list[_Explained] = []
         before = self.symptoms
         for edit in sure:
-            likely, replaced = whole[0][1][edit]
+            likely, replaced = pairs[0][edit]
             left = self._left_by([*chain(*(other.edits for other in explained)), *replaced])
             left = before if left is None else left
             row = int(loop.row[edit.corner])

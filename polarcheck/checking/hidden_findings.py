@@ -14,6 +14,7 @@ import numpy as np
 
 from polarcheck.checking.edits import applied, spans
 from polarcheck.checking.engine import Engine
+from polarcheck.columns.words.slips import WORD
 from polarcheck.foundation.finding import SEVERITIES, WARNING, Finding, Silenced, Undecided, each_finding
 from polarcheck.foundation.states import Motion, Side
 from polarcheck.program.execution.runs import runs
@@ -28,8 +29,8 @@ REPORTS = "nearly-regular-contour"
 #: Checks of a program for what is hidden in it.
 _MOST_CHECKS = 6
 
-#: The addresses of the linear axis of the polar plane.
-LINEAR = "XU"
+#: Addresses of words that are no coordinate of the polar plane by mistake: the linear axis, codes.
+_OTHERS = "XUGM"
 
 #: Gives the findings of an engine.
 Check = Callable[[Engine], list[Finding]]
@@ -51,14 +52,20 @@ def edited(engine: Engine, number: int, edits: Sequence[Replace], rules: Sequenc
 
 
 def with_hidden(
-    engine: Engine, findings: list[Finding], number: int, edits: Sequence[Replace], check: Check
+    engine: Engine,
+    findings: list[Finding],
+    hiding: Sequence[Finding],
+    number: int,
+    edits: Sequence[Replace],
+    check: Check,
 ) -> list[Finding]:
     """
     Return the findings, with those of the same sections that are found without what hides them.
 
-    number: of the run. edits: they explain findings, and leave others. check: gives the findings of a program.
+    hiding: those that may hide others. number: of the run. edits: they explain findings, and leave others. check: gives
+    the findings of a program.
     """
-    hiding = [finding for finding in findings if is_told(finding) and engine.rules[finding.rule].doubts]
+    hiding = [finding for finding in hiding if is_told(finding) and engine.rules[finding.rule].doubts]
     if engine.allows is not None or not (hiding or edits):
         return findings
     trials = _Trials(engine, number, check)
@@ -105,14 +112,10 @@ def symptoms(findings: Sequence[Finding]) -> set[Symptom]:
 
 
 def _is_gone(finding: Finding, before: set[Symptom], after: set[Symptom]) -> bool:
-    """A finding is gone, its rule fires nowhere else instead, and less is found; with a fix, no more."""
+    """A finding is gone, its rule fires nowhere else instead, and no more is found."""
     counts = [sum(rule != REPORTS for rule, _ in found) for found in (before, after)]
-    is_less = counts[1] < counts[0] + (finding.fix is not None)
-    return (
-        is_less
-        and (finding.rule, finding.line) not in after
-        and all(rule != finding.rule for rule, _ in after - before)
-    )
+    is_elsewhere = any(rule == finding.rule for rule, _ in after - before)
+    return counts[1] <= counts[0] and (finding.rule, finding.line) not in after and not is_elsewhere
 
 
 class _Trials:
@@ -138,9 +141,11 @@ def _repairs(engine: Engine, finding: Finding) -> Iterator[list[Replace]]:
     run, machine, source = trace.run, trace.machine, trace.text.source
     doubts = {what for what, _ in engine.rules[finding.rule].doubts}
     rows = np.flatnonzero((trace.blocks.line == finding.line) & (trace.mode.section >= 0))
-    is_rapid = trace.blocks.codes(*machine.codes("rapid"))
-    if "rapid" in doubts and not trace.mode.given_in_section(is_rapid)[rows[:1]].all():
-        return  # G0 stands above the section: the block of which G1 is missing may have had more
+    motion = trace.modal.motion_word[rows[:1]] if "rapid" in doubts else rows[:0]
+    codes = np.flatnonzero(np.isin(run.words.start, motion))[:1]
+    # Where G0 stands above the section, the block of which G1 is missing may have had more; where it is alone, less.
+    if any(trace.mode.section[run.row[code]] < 0 or len(words_of(run, int(run.row[code]))) < 2 for code in codes):
+        return
     if finding.fix is not None:
         yield spans(source, finding.fix)
         return
@@ -151,9 +156,12 @@ def _repairs(engine: Engine, finding: Finding) -> Iterator[list[Replace]]:
     first, last = (start + column - 1 for column in (finding.column, finding.end_column))
     words = words_of(run, row)
     at = [word for word in words if first <= int(run.words.start[word]) < last]
-    if "rapid" in doubts and trace.axes.motion[row] == Motion.RAPID:
-        codes = np.flatnonzero(run.words.start == trace.modal.motion_word[row])
-        yield from ([in_place_of(run, int(word), next(iter(machine.codes("line"))))] for word in codes[:1])
+    needed = WORD.fullmatch(str(finding.values.get("word_needed", "")))
+    if needed is not None and len(at) == 1:
+        yield [in_place_of(run, at[0], needed[0])]
+        return
+    if trace.axes.motion[row] == Motion.RAPID:
+        yield from ([in_place_of(run, int(word), next(iter(machine.codes("line"))))] for word in codes)
     sides = trace.blocks.code_indices(*machine.codes("compensation_left"), *machine.codes("compensation_right"))
     for word in at if "compensation" in doubts else ():
         if word in sides:
@@ -167,7 +175,7 @@ def _repairs(engine: Engine, finding: Finding) -> Iterator[list[Replace]]:
         letter = trace.axes.virtual_addresses(row)[0]
         if len(alike) > 1:
             yield from (without(run, row, [word]) for word in alike)
-        elif chr(address[at[0]]) not in {letter, *trace.axes.virtual_addresses(row), *LINEAR}:
+        elif chr(address[at[0]]) not in {letter, *trace.axes.virtual_addresses(row), *_OTHERS}:
             yield [in_place_of(run, at[0], letter + run.written(at[0]).strip()[1:])]
 
 

@@ -108,7 +108,7 @@ def likely_pairs(trace: Trace, loop: WrittenLoop, most: int) -> list[tuple[Likel
     for first in likely_edits(trace, loop, _FIRST_EDITS, LEAST_IF_WHOLE, is_one_of_two=True):
         if first.edit.kind in _OF_BLOCKS:
             continue
-        for second in likely_edits(trace, with_edit(loop, first.edit), _SECOND_EDITS):
+        for second in likely_edits(trace, with_edit(loop, first.edit), _SECOND_EDITS, LEAST_IF_WHOLE):
             if second.edit.kind in _OF_BLOCKS or second.edit.corner == first.edit.corner:
                 continue
             one, two = sorted((first, second), key=lambda likely: likely.edit.corner)

@@ -254,7 +254,7 @@ def with_edit(loop: WrittenLoop, edit: Edit) -> WrittenLoop:
     """The path with an edit that leaves its blocks as they are; its words are those that are written."""
     values, steps, turns, radius, to_center = _changed(loop, [edit])
     first, second = (
-        axis._replace(value=value[1], is_step=step[1])
+        axis._replace(value=value[1], is_step=step[1], word=np.where(np.isnan(value[1]), -1, axis.word))
         for axis, value, step in zip(loop.axes, values, steps, strict=True)
     )
     return loop._replace(axes=(first, second), turns=turns[1], radius=radius[1], to_center=to_center[1])

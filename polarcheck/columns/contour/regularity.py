@@ -105,8 +105,8 @@ class Regularity(Columns, frozen=True):
         """By row what makes a contour symmetric."""
         by_row: dict[int, Correction] = {}
         for _, found in self._corrected:
-            if found.symmetric is not None:
-                by_row.setdefault(found.symmetric.row, found.symmetric)
+            for correction in found.symmetric:
+                by_row.setdefault(correction.row, correction)
         return by_row
 
     @cached_property
