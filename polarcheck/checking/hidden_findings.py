@@ -20,7 +20,6 @@ from polarcheck.foundation.states import Motion, Side
 from polarcheck.program.execution.runs import runs
 from polarcheck.program.reading.source import read_source
 from polarcheck.rules.editing import Replace, in_place_of, is_plain, without, words_of
-from polarcheck.rules.other_machine import OtherMachine
 from polarcheck.rules.rule import Rule
 from polarcheck.rules.tables import Tables
 
@@ -47,7 +46,7 @@ def edited(engine: Engine, number: int, edits: Sequence[Replace], rules: Sequenc
     states = runs(read_source(data, source.path, source.encoding), machine, job)
     # Without its last sign of block skip a program runs once.
     tables = Tables(states[min(number, len(states) - 1)][1], machine, job)
-    tables.give("other_machine", OtherMachine(tables))
+    tables.give("other_machine", engine.tables["other_machine"])  # an edit makes it no program for another machine
     return Engine(tables, engine.severities, rules)
 
 
