@@ -166,6 +166,8 @@ def call(name: str) -> tuple[dict[str, Any], Any]:
         "check": {"paths": ["a.nc"]},
         "compare": {"old": "a.nc", "new": "a.nc"},
         "compare_text": {"old": TEXT, "new": TEXT},
+        "convert": {"path": "a.nc", "to": "haas-lathe"},
+        "convert_text": {"text": TEXT, "to": "haas-lathe"},
         "machine": {"name": "fanuc"},
         "machine_names": {},
         "render": {"report": polarcheck.check_text("M30\n")},

@@ -99,7 +99,7 @@ class ImpliedUnits(Columns, frozen=True):
         """Every compensated contour lies within R of the center, or farther out than any cutter mills."""
         trace = self.trace
         radius = np.abs(trace.offsets.radius_of_offset)
-        rows = trace.mode.in_polar & trace.compensation.compensates & (radius > 0) & self._radius_is_of_job
+        rows = trace.mode.in_polar & trace.compensation.compensates & (radius > ROUNDING) & self._radius_is_of_job
         ratio = self._reach / np.where(rows, radius, 1.0)
         nearest, farthest = self._extremes(ratio, rows)
         is_small = farthest < 1
