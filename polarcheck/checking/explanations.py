@@ -47,6 +47,8 @@ _RULES_OF_CODE, _BLOCKS_OF_CODE = 2, 4
 _OF_CUTTER = "overcut", "slot-narrower-than-cutter", "inside-arc-smaller-than-radius"
 #: Rules of rates: no code that stands elsewhere explains them.
 _OF_RATES = "c-feed-above-limit", "c-acceleration-above-limit", "x-acceleration-above-limit"
+#: The rule that speaks of a word or a code that is missing, and of no number.
+_OF_CODES = "arc-without-center"
 
 #: A rule and a line at which it fires.
 _Symptom = tuple[str, int]
@@ -200,7 +202,9 @@ class _Search:
             lines = {line for rule, line in self.symptoms if line in own and rule not in _OF_RATES}
             rows = np.flatnonzero(np.isin(self.trace.blocks.line, [*lines]))
             whole = self._by_codes(ramp_edits(self.trace, loop.row[1:], rows), own, others, _RULES_OF_CODE)
-        if not whole and (pair := self._pair(loop, own, others)):
+        # An arc that has no center has none with two other numbers either.
+        is_of_numbers = not any(rule == _OF_CODES and line in own for rule, line in self.symptoms)
+        if not whole and is_of_numbers and (pair := self._pair(loop, own, others)):
             return pair
         best = whole or partly
         best = [found for found in best if best[0].likely.gain - found.likely.gain <= _AS_LIKELY]

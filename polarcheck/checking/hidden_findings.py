@@ -87,6 +87,9 @@ def with_hidden(
             sections.add(finding.section_line)
     lines = {source.line_of(start) for start, _, _ in edits}
     known = {(finding.rule, finding.line) for finding in findings}
+    told = {
+        (finding.rule, finding.section_line) for finding in findings if engine.rules[finding.rule].once == "section"
+    }
     hidden = [
         msgspec.structs.replace(finding, fix=None)
         for finding in left or ()
@@ -94,6 +97,7 @@ def with_hidden(
         and finding.section_line in sections
         and finding.line not in lines
         and (finding.rule, finding.line) not in known
+        and (finding.rule, finding.section_line) not in told
     ]
     return [*_without(findings, symptoms(hidden)), *hidden]
 

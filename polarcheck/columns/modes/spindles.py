@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from msgspec.structs import astuple
 
-from polarcheck.columns.filling import before, happened, last_row
+from polarcheck.columns.filling import before, happened
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Mask, Rows, cached_property, repeated
+from polarcheck.foundation.arrays import Mask, Rows, cached_property
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.program.machines.code_tables import NO_CODE
 from polarcheck.program.machines.m_codes import OF_EVERY_LATHE
@@ -112,20 +112,6 @@ class Spindles:
         from polarcheck.columns.modes.numbered_spindles import unstarted_speeds
 
         return unstarted_speeds(self.trace)
-
-    @cached_property
-    def stopped_at(self) -> Rows:
-        """
-        Per row where M5 has stopped the spindle, and nothing that may start a tool stands above; -1 for none.
-
-        No code of the program is unlisted, for it might start the live tool, and the profile names none that does.
-        """
-        trace, none = self.trace, repeated(np.int64(-1), len(self.trace))
-        stops = trace.blocks.codes(*self._codes.spindle_off) & before(trace.modal.spindle, trace.blocks.starts, False)
-        if not stops.any() or len(self.unlisted) or self._codes.live_tool_on:
-            return none
-        row = last_row(stops, trace.blocks.starts | trace.run.unknown)
-        return np.where(trace.modal.spindle | ~trace.blocks.whole_program, none, row)
 
     @property
     def are_no_live_tool(self) -> Mask:

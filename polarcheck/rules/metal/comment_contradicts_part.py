@@ -147,7 +147,6 @@ def comment_contradicts_part(part_comments: PartComments) -> Hits:
         G0 X60. Z50.
         M5
         T0101
-        G97 S2000 M13
         G0 X60. Z2. C0
         G12.1
         G1 X60. C0 F1500

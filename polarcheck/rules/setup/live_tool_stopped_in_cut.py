@@ -34,8 +34,7 @@ def live_tool_stopped_in_cut(
     that has none.
 
     A spindle that has a speed by its number, `S2=2000`, is started by its number, too: `M2=3`. Where nothing in the
-    program starts it, that is a warning: which spindle has the tool is not known to the profile. So it is where M5 has
-    stopped the spindle of the turning, and no code of the program may start anything since.
+    program starts it, that is a warning: which spindle has the tool is not known to the profile.
 
     Source: builder's guide to G12.1, sample program.
 
@@ -82,24 +81,6 @@ def live_tool_stopped_in_cut(
         TRAFOOF
         M30
 
-    Bad:
-
-        O1
-        T1111
-        G99 G97 S1200 M3
-        G0 X64. Z2.
-        G1 Z-10. F.2
-        G0 X100. Z50. M5
-        T0202
-        G98 G0 X60. C0
-        G12.1
-        G1 C10. F1500     (expect: live-tool-stopped-in-cut)
-        X40. F200
-        C-10.
-        X60. F1500
-        G13.1
-        M30
-
     Good, set m_codes.live_tool_on=["M33"], set m_codes.live_tool_off=["M5"]:
 
         G98 G0 X60. C0
@@ -112,8 +93,7 @@ def live_tool_stopped_in_cut(
         G13.1
         M5
     """
-    codes = machine.m_codes
-    unstarted = (spindles.unstarted_speed >= 0) | (spindles.stopped_at >= 0)
+    codes, unstarted = machine.m_codes, spindles.unstarted_speed >= 0
     expected = entry.expects(codes.live_tool_on and [*codes.live_tool_on, *codes.live_tool_off])
     stopped = mode.first_in_section(path.cuts & ~modal.live_tool & expected)
     # Where the main spindle was started in its place, that is the fault; a tool that ran before is another.
@@ -126,10 +106,7 @@ def details(hit: Hit, spindles: Spindles) -> Details:
     from polarcheck.rules.remedies import or_by
     from polarcheck.rules.wording.written import executed_word
 
-    codes, index, stop = (
-        hit.trace.machine.m_codes,
-        *(int(column[hit.row]) for column in (spindles.unstarted_speed, spindles.stopped_at)),
-    )
+    codes, index = hit.trace.machine.m_codes, int(spindles.unstarted_speed[hit.row])
     if index >= 0:
         run = hit.trace.run
         speed = executed_word(run, index)
@@ -139,9 +116,6 @@ def details(hit: Hit, spindles: Spindles) -> Details:
             "code_needed": code,
             "or_started_by": f", nothing starts the spindle with {speed} of line {hit.line(run.row[index])}",
         }
-    if stop >= 0:
-        started = f", the spindle stands since line {hit.line(stop)} and nothing starts it or another one"
-        return {"code_needed": "the code that starts it", "or_started_by": started}
     return {
         "code_needed": " or ".join(codes.live_tool_on),
         "or_started_by": or_by(hit, spindles, "starts it", "m_codes.live_tool_on"),
