@@ -82,3 +82,19 @@ def test_increments_in_one_pass_are_told_by_the_others(old: str, line: int) -> N
     assert different(text, "mazak-eia") == {line: line - 16}
     found = report_of(text, "mazak-eia", "1:radius=4").findings
     assert any(one.line == line and "without G91" in one.message for one in found), found
+
+
+def test_a_word_that_most_passes_lack_is_no_fault_of_these() -> None:
+    text = HEAD + "".join(BLOCKS.format(-2 * number) for number in range(1, 4)) + END
+    head, lacking = text, "G42 C0. F80"
+    for _ in range(2):
+        head = head.replace("G42 X40. C0. F80", lacking, 1)
+    assert different(head) == {}
+
+
+def test_among_many_contours_of_as_many_blocks_two_with_the_same_numbers_are_compared() -> None:
+    others = [BLOCKS.replace("C20.5", f"C2{number}.5") for number in range(1, 9)]
+    others += [BLOCKS.replace("X-36.2", f"X-3{number}.3") for number in range(8)]
+    head = HEAD + "".join(f"Z2.\n{blocks.format(-2)}" for blocks in (BLOCKS, *others))
+    last = BLOCKS.format(-4).replace("C20.5\nX-36.2 C18.7", "X-36.2 C18.7\nC20.5")
+    assert different(head + last + END) == {head.count("\n") + 3: 9}

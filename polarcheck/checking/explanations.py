@@ -18,9 +18,16 @@ import numpy as np
 from polarcheck.checking.code_edits import CodeEdit, exchanged, missing_steps, ramp_edits, unneeded, unskipped
 from polarcheck.checking.edits import origins
 from polarcheck.checking.engine import Engine, with_following
-from polarcheck.checking.hidden_findings import REPORTS, edited, is_told, with_hidden
+from polarcheck.checking.hidden_findings import MOST_ROWS, REPORTS, edited, is_told, with_hidden
 from polarcheck.columns.contour.correction import Correction
-from polarcheck.columns.contour.likely_edits import LEAST_IF_WHOLE, Likely, correction_by, likely_edits, likely_pairs
+from polarcheck.columns.contour.likely_edits import (
+    AS_LIKELY,
+    LEAST_IF_WHOLE,
+    Likely,
+    correction_by,
+    likely_edits,
+    likely_pairs,
+)
 from polarcheck.columns.contour.loop_edits import Edit
 from polarcheck.columns.contour.written_loop import WrittenLoop, written_loops
 from polarcheck.columns.words.slips import WORD
@@ -33,10 +40,10 @@ from polarcheck.rules.rule import Hits
 
 #: The rule that compares paths: either of them may be wrong.
 _COMPARES = "passes-differ"
-#: Paths of a file that are searched, edits and pairs of edits of each that are tried, rows of all trials of a file.
-_MOST_LOOPS, _TRIALS, _PAIRS, _MOST_ROWS = 8, 5, 4, 20_000
-#: By how much less a second edit may explain, for both to be named [coordinates]; how many are named.
-_AS_LIKELY, _NAMED = 0.5, 2
+#: Paths of a file that are searched, edits and pairs of edits of each that are tried.
+_MOST_LOOPS, _TRIALS, _PAIRS = 8, 5, 4
+#: As many edits that are as likely are named.
+_NAMED = 2
 #: By how much less one may explain that removes all findings of a path, where likelier ones leave some [coordinates].
 _LESS_LIKELY = 1.5
 
@@ -48,7 +55,7 @@ _OF_CUTTER = "overcut", "slot-narrower-than-cutter", "inside-arc-smaller-than-ra
 #: Rules of rates: no code that stands elsewhere explains them.
 _OF_RATES = "c-feed-above-limit", "c-acceleration-above-limit", "x-acceleration-above-limit"
 #: The rule that speaks of a word or a code that is missing, and of no number.
-_OF_CODES = "arc-without-center"
+_NO_CENTER = "arc-without-center"
 
 #: A rule and a line at which it fires.
 _Symptom = tuple[str, int]
@@ -87,7 +94,7 @@ def explained(engine: Engine, findings: list[Finding], number: int, less_regular
     regular to which no rule objects; that is a finding, too.
     """
     source = engine.trace.text.source
-    if REPORTS not in engine.rules or source.parts or source.channel or len(engine.trace) > _MOST_ROWS:
+    if REPORTS not in engine.rules or source.parts or source.channel or len(engine.trace) > MOST_ROWS:
         return findings
     findings, partly, whole = _explained(engine, findings, number, less_regular)
     clear = {source.line_of(start) for start, _, _ in whole}
@@ -144,7 +151,7 @@ class _Search:
     def __init__(self, engine: Engine, number: int) -> None:
         self.engine, self.trace, self.number = engine, engine.trace, number
         self.rules = [rule for rule in engine.rules.values() if not rule.of_text and rule.over == "rows"]
-        self.rows_left = _MOST_ROWS
+        self.rows_left = MOST_ROWS
         # What is explained is mended when the next path is tried, which may be compared with it.
         self.mended: list[Replace] = []
         self.symptoms = self._symptoms(engine)
@@ -183,7 +190,7 @@ class _Search:
         whole = self._by_codes(of_code, own, others, 1)
         partly: list[_Explained] = []
         for likely in () if whole else likely_edits(self.trace, loop, _TRIALS, LEAST_IF_WHOLE):
-            best, reach = (whole, _AS_LIKELY) if whole else (partly, _LESS_LIKELY)
+            best, reach = (whole, AS_LIKELY) if whole else (partly, _LESS_LIKELY)
             if best and best[0].likely.gain - likely.gain > reach:
                 break
             edits = self._edits(loop, likely)
@@ -203,11 +210,11 @@ class _Search:
             rows = np.flatnonzero(np.isin(self.trace.blocks.line, [*lines]))
             whole = self._by_codes(ramp_edits(self.trace, loop.row[1:], rows), own, others, _RULES_OF_CODE)
         # An arc that has no center has none with two other numbers either.
-        is_of_numbers = not any(rule == _OF_CODES and line in own for rule, line in self.symptoms)
+        is_of_numbers = not any(rule == _NO_CENTER and line in own for rule, line in self.symptoms)
         if not whole and is_of_numbers and (pair := self._pair(loop, own, others)):
             return pair
         best = whole or partly
-        best = [found for found in best if best[0].likely.gain - found.likely.gain <= _AS_LIKELY]
+        best = [found for found in best if best[0].likely.gain - found.likely.gain <= AS_LIKELY]
         if not best:
             return []
         best[0] = best[0]._replace(is_whole=bool(whole))
@@ -227,7 +234,7 @@ class _Search:
         whole: list[tuple[float, dict[Edit, tuple[Likely, list[Replace]]]]] = []
         for pair in likely_pairs(self.trace, loop, _PAIRS):
             gain = sum(likely.gain for likely in pair)
-            if whole and whole[0][0] - gain > _AS_LIKELY:
+            if whole and whole[0][0] - gain > AS_LIKELY:
                 break
             edits = [self._edits(loop, likely) for likely in pair]
             found = self._tried(pair[0], 0, [*chain(*edits)], others) if all(edits) else None

@@ -25,11 +25,10 @@ from polarcheck.rules.tables import Tables
 
 #: The rule that reports an edit which explains findings; it is no symptom.
 REPORTS = "nearly-regular-contour"
-#: Checks of a program for what is hidden in it.
-_MOST_CHECKS = 6
-
-#: Addresses of words that are no coordinate of the polar plane by mistake: the linear axis, codes.
-_OTHERS = "XUGM"
+#: Checks of a program for what is hidden in it, and rows of all trials of a file.
+_MOST_CHECKS, MOST_ROWS = 6, 20_000
+#: Addresses that are not written for the second axis by mistake: the linear axis, codes.
+_NOT_MISTAKEN = "XUGM"
 
 #: Gives the findings of an engine.
 Check = Callable[[Engine], list[Finding]]
@@ -124,7 +123,7 @@ def _is_gone(finding: Finding, before: set[Symptom], after: set[Symptom]) -> boo
 class _Trials:
     def __init__(self, engine: Engine, number: int, check: Check) -> None:
         self.engine, self.number, self.check = engine, number, check
-        self.left = _MOST_CHECKS
+        self.left = min(_MOST_CHECKS, MOST_ROWS // len(engine.trace))
 
     def findings(self, edits: Sequence[Replace]) -> list[Finding] | None:
         """The findings of the program with these edits; None where its lines are others then, or too many are tried."""
@@ -178,7 +177,7 @@ def _repairs(engine: Engine, finding: Finding) -> Iterator[list[Replace]]:
         letter = trace.axes.virtual_addresses(row)[0]
         if len(alike) > 1:
             yield from (without(run, row, [word]) for word in alike)
-        elif chr(address[at[0]]) not in {letter, *trace.axes.virtual_addresses(row), *_OTHERS}:
+        elif chr(address[at[0]]) not in {letter, *trace.axes.virtual_addresses(row), *_NOT_MISTAKEN}:
             yield [in_place_of(run, at[0], letter + run.written(at[0]).strip()[1:])]
 
 

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from polarcheck.columns.contour.correction import Correction
-from polarcheck.columns.contour.likely_edits import Likely, correction_by, likely_edits
+from polarcheck.columns.contour.likely_edits import AS_LIKELY, Likely, correction_by, likely_edits
 from polarcheck.columns.contour.loop_edits import outlines_of
 from polarcheck.columns.contour.plane_loops import PlaneLoop
 from polarcheck.columns.contour.written_loop import AxisWords, axis_words, written_loop
@@ -35,8 +35,6 @@ _MOST_TRIALS, _ENDS, _GAPS = 80, 3, 3
 _MOST_EDITS, _LEAST_GAIN, _GAIN_ALONE, _FEWEST_BLOCKS = 16, 0.5, 3.8, 6
 #: The gain of a slip that is often made, and makes all arcs tangent.
 _GAIN_IF_COMMON = 3.0
-#: By how much less a second one may explain, for both to be named [coordinates].
-_AS_LIKELY = 0.5
 #: The gain with more symmetry, by which so many numbers more are fixed.
 _GAIN_IN_SYMMETRY, _LEAST_FIXED = 2.4, 3
 
@@ -167,7 +165,7 @@ class _Search:
         found: list[tuple[Likely, Correction, Symmetry]] = []
         best = -1
         for likely in likely_edits(self.trace, loop, _MOST_EDITS, _LEAST_GAIN):
-            if best >= 0 and found[best][0].gain - likely.gain > _AS_LIKELY:
+            if best >= 0 and found[best][0].gain - likely.gain > AS_LIKELY:
                 break
             edit = likely.edit
             outline = outlines_of(loop, [edit])

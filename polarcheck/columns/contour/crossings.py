@@ -129,9 +129,8 @@ class Crossings(Columns, frozen=True):
     @cached_property
     def _is_outer(self) -> Mask:
         """Per pass: it closes a ring that has the part inside. Into a pocket a lead may come through its open side."""
-        total = np.add.reduceat(sum(self._turning), self.passes.first)
         side = self.trace.compensation.side[self.passes.row[self.passes.first]]
-        return np.asarray(self.passes.closed & (total * np.where(side == Side.RIGHT, 1, -1) > 0))
+        return np.asarray(self.passes.closed & (self._turn * np.where(side == Side.RIGHT, 1, -1) > 0))
 
     # ---- cheap tests: which passes cannot cross themselves ----
 
@@ -145,10 +144,14 @@ class Crossings(Columns, frozen=True):
         return np.where(passes.in_ring, sweep, 0.0), np.where(passes.in_ring, np.nan_to_num(passes.turns[1]), 0.0)
 
     @cached_property
+    def _turn(self) -> Floats:
+        """Per pass how far its ring turns [rad]; 0 without one."""
+        return np.asarray(np.add.reduceat(sum(self._turning), self.passes.first))
+
+    @cached_property
     def _goes_round_once(self) -> Mask:
         """Per pass: it closes a ring that turns once, as a contour that does not cross itself does."""
-        total = np.add.reduceat(sum(self._turning), self.passes.first)
-        return np.asarray(self.passes.closed & (np.abs(np.abs(total) - 2 * np.pi) < 0.1))
+        return np.asarray(self.passes.closed & (np.abs(np.abs(self._turn) - 2 * np.pi) < 0.1))
 
     @cached_property
     def _is_convex(self) -> Mask:

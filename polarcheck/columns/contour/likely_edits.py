@@ -16,6 +16,8 @@ from polarcheck.geometry.regularity.coincidences import Chances, Outlines, chanc
 _LEAST_GAIN = 2.5
 #: The same where all findings of the path are gone with it; an edit of less must be told apart by more than that.
 LEAST_IF_WHOLE = 0.9
+#: By how much less a second edit may explain, for both to be named [coordinates].
+AS_LIKELY = 0.5
 #: Corners at arcs of a contour in which all other arcs are tangent.
 _MOST_CORNERS = 2
 #: So much of it must be other than arcs that reach their ends; in a path of few blocks more.

@@ -108,8 +108,8 @@ class PassDepths(Columns, frozen=True):
     @cached_property
     def _in_steps(self) -> list[tuple[int, float]]:
         """Passes out of step with the others of their contour, and the Z that would fit; NaN where several would."""
-        groups = _groups(self.passes, self.passes.contour, _FEWEST)
-        return [off for group in groups if (off := self._out_of_step(group)) is not None]
+        groups = _groups(self.passes.contour, _FEWEST)
+        return [off for group in groups if (off := self._out_of_step(self.passes[group])) is not None]
 
     def _out_of_step(self, passes: Passes) -> tuple[int, float] | None:
         """
@@ -137,7 +137,7 @@ class PassDepths(Columns, frozen=True):
         of contours of one tool that are alike, each at a place of its own.
         """
         passes = self.passes
-        groups = [group for group in _groups(passes, passes.shape, _LEAST) if group.are_apart]
+        groups = [group for group in map(passes.__getitem__, _groups(passes.shape, _LEAST)) if group.are_apart]
         rows = [(group.row, group.z) for group in groups] + self._alike
         found: dict[int, float] = {}
         for row, z in rows:
@@ -163,17 +163,15 @@ class PassDepths(Columns, frozen=True):
         tool = trace.tools.tool_called[first].astype(np.float64)
         like = numbered([*keys, tool])
         at = numbered([np.rint(places.real), np.rint(places.imag)])
-        groups = [np.flatnonzero(like == which) for which in np.flatnonzero(np.bincount(like) >= _LEAST).tolist()]
-        return [
-            (first[group], trace.path.z[first[group]]) for group in groups if len(different(at[group])) == len(group)
-        ]
+        groups = [group for group in _groups(like, _LEAST) if len(different(at[group])) == len(group)]
+        return [(first[group], trace.path.z[first[group]]) for group in groups]
 
 
-def _groups(passes: Passes, key: Rows, fewest: int) -> list[Passes]:
-    """The passes of equal keys, where they are as many."""
+def _groups(key: Rows, fewest: int) -> list[Rows]:
+    """The numbers of the passes of equal keys, where they are as many."""
     order = np.argsort(key, kind="stable")
     first = np.flatnonzero(np.diff(key[order], prepend=-1))
-    return [passes[group] for group in np.split(order, first[1:]) if len(group) >= fewest]
+    return [group for group in np.split(order, first[1:]) if len(group) >= fewest]
 
 
 def _shapes(number: Rows, point: Rows) -> Rows:

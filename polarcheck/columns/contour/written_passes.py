@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck.columns.contour.passes import numbered
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Floats, Rows
 from polarcheck.foundation.states import Side
@@ -35,15 +35,100 @@ class WrittenDifference(NamedTuple):
     first: int
 
 
+class _Passes(NamedTuple):
+    """
+    Passes, n of them with m blocks in all.
+
+    rows: int[m]. first, count: int[n], the blocks of each. words, state: [m], what is written, and what is in force.
+    total, shape: [n], a number of what is written, in any order and in this one. values: float64[addresses, m].
+    """
+
+    trace: Trace
+    rows: Rows
+    first: Rows
+    size: Rows
+    words: _Hash
+    state: Rows
+    total: _Hash
+    shape: _Hash
+    values: Floats
+
+    def blocks(self, number: int) -> Rows:
+        """The blocks of a pass."""
+        return np.arange(self.first[number], self.first[number] + self.size[number])
+
+    def kinds(self, keys: list[Rows | _Hash]) -> Iterator[tuple[list[int], list[int]]]:
+        """Of passes of equal keys one of each shape, the most frequent first, then the one above; how many have it."""
+        chosen = np.flatnonzero((self.size >= _FEWEST) & (self.size <= _MOST))
+        program = self.trace.blocks.program[self.rows[self.first]]
+        columns = [key[chosen].astype(np.uint64) for key in (*keys, self.size, program)]
+        _, group, members = np.unique(np.stack(columns, axis=1), axis=0, return_inverse=True, return_counts=True)
+        for which in np.flatnonzero(members > 1).tolist():
+            passes = chosen[group.reshape(-1) == which]
+            _, begin, frequency = np.unique(self.shape[passes], return_index=True, return_counts=True)
+            order = np.lexsort((begin, -frequency))
+            yield passes[begin[order]].tolist(), frequency[order].tolist()
+
+    def difference(self, own: Rows, model: Rows, at: int | None) -> WrittenDifference | None:
+        """The difference of a pass in one of its blocks; None where both passes run the same block there."""
+        if at is None or self.trace.run.block[self.rows[own[at]]] == self.trace.run.block[self.rows[model[at]]]:
+            return None
+        return WrittenDifference(self.rows[own], self.rows[model], at)
+
+    def with_the_same_numbers(self) -> Iterator[WrittenDifference | None]:
+        """The passes that differ from the most frequent one with the same numbers."""
+        for passes, _ in self.kinds([self.total]):
+            model = self.blocks(passes[0])
+            for own in map(self.blocks, passes[1:]):
+                at = _difference(self.words[own] != self.words[model], self.state[own], self.state[model])
+                yield self.difference(own, model, at)
+
+    def in_one_word(self) -> Iterator[WrittenDifference | None]:
+        """The passes that differ from a more frequent one, or one as frequent, in one word."""
+        for passes, frequency in self.kinds([]):
+            for rank, other in enumerate(passes[:_SHAPES]):
+                earlier = (number for number in range(rank) if self.total[passes[number]] != self.total[other])
+                models = ((passes[number], frequency[number] == frequency[rank]) for number in earlier)
+                found = (self._one_word(other, model, is_as_frequent) for model, is_as_frequent in models)
+                yield next((difference for difference in found if difference is not None), None)
+
+    def _one_word(self, other: int, earlier: int, is_as_frequent: bool) -> WrittenDifference | None:
+        own, model = self.blocks(other), self.blocks(earlier)
+        # A block that moves nothing hands its ramp to the next one.
+        differs = self.state[own] % _COMPENSATION != self.state[model] % _COMPENSATION
+        differs |= self.words[own] != self.words[model]
+        if np.count_nonzero(differs) != 1:
+            return None
+        at = int(np.argmax(differs))
+        if is_as_frequent and _lacks_word(self.values[:, model[at]], self.values[:, own[at]]):
+            own, model = model, own
+        return self.difference(own, model, at) if self._is_slip(int(own[at]), int(model[at])) else None
+
+    def _is_slip(self, own: int, model: int) -> bool:
+        """A block of a contour leads elsewhere than the model's, since a word is missing or its number is a slip."""
+        path, row, its_row = self.trace.path, self.rows[own], self.rows[model]
+        if self.trace.compensation.cancels[row] or not abs(path.end[row] - path.end[its_row]) > _APART:
+            return False
+        ours, theirs = self.values[:, own], self.values[:, model]
+        if _lacks_word(ours, theirs):
+            return True
+        odd = np.flatnonzero((ours != theirs) & ~(np.isnan(ours) & np.isnan(theirs)))
+        if len(odd) != 1 or np.isnan(theirs[odd[0]]):
+            return False
+        from polarcheck.columns.words.slips import plain_number, slip_of  # few passes differ
+
+        slip = slip_of(plain_number(float(ours[odd[0]])), float(theirs[odd[0]]), _ROUNDING)
+        return slip is not None and slip.plain
+
+
 def written_differences(trace: Trace) -> Iterator[WrittenDifference]:
-    """The passes that differ from the most frequent one of as many blocks; of those as frequent, from the one above."""
+    """The passes that are written otherwise than one of as many blocks: the more frequent one, or the one above."""
     values = np.stack([trace.blocks.word(address) for address in _ADDRESSES])
     rows = np.flatnonzero(trace.mode.in_polar & ~np.isnan(values).all(axis=0))
     begins = (trace.path.moves_z & ~trace.path.travels) | trace.mode.enters
     first = np.flatnonzero(np.diff(np.cumsum(begins)[rows], prepend=-1))
     count = np.diff(first, append=len(rows))
-    chosen = np.flatnonzero((count >= _FEWEST) & (count <= _MOST))
-    if len(chosen) < 2:
+    if np.count_nonzero((count >= _FEWEST) & (count <= _MOST)) < 2:
         return
     number = _mixed(values[:, rows])
     words = np.add.reduce(number * _odd(len(_ADDRESSES))[:, None], axis=0, dtype=np.uint64)
@@ -51,30 +136,8 @@ def written_differences(trace: Trace) -> Iterator[WrittenDifference]:
     index = np.arange(len(rows)) - np.repeat(first, count)
     total = np.add.reduceat(np.add.reduce(number, axis=0, dtype=np.uint64), first)
     shape = np.add.reduceat(_mixed(index.astype(np.float64)) * (words + state.astype(np.uint64)), first)
-    program = trace.blocks.program[rows[first]]
-    group = numbered([count[chosen].astype(np.float64), program[chosen].astype(np.float64)])
-    for which in np.flatnonzero(np.bincount(group) > 1).tolist():
-        passes = chosen[group == which]
-        _, begin, frequency = np.unique(shape[passes], return_index=True, return_counts=True)
-        order = begin[np.lexsort((begin, -frequency))][:_SHAPES]
-        for rank, other in enumerate(passes[order].tolist()):
-            own = first[other] + np.arange(count[other])
-            for earlier in passes[order[:rank]].tolist():
-                model = first[earlier] + np.arange(count[other])
-                is_otherwise = words[own] != words[model]
-                if total[other] == total[earlier]:
-                    row = _difference(is_otherwise, state[own], state[model])
-                else:
-                    # A block that moves nothing hands its ramp to the next one.
-                    is_otherwise |= state[own] % _COMPENSATION != state[model] % _COMPENSATION
-                    row = int(np.argmax(is_otherwise)) if np.count_nonzero(is_otherwise) == 1 else None
-                    if row is not None and _lacks_word(values[:, rows[model[row]]], values[:, rows[own[row]]]):
-                        own, model = model, own
-                    if row is not None and not _is_slip(trace, rows[own[row]], rows[model[row]], values):
-                        row = None
-                if row is not None and trace.run.block[rows[own[row]]] != trace.run.block[rows[model[row]]]:
-                    yield WrittenDifference(rows[own], rows[model], row)
-                    break
+    passes = _Passes(trace, rows, first, count, words, state, total, shape, values[:, rows])
+    yield from (one for one in chain(passes.with_the_same_numbers(), passes.in_one_word()) if one is not None)
 
 
 def _mixed(values: Floats) -> _Hash:
@@ -114,19 +177,3 @@ def _lacks_word(ours: Floats, theirs: Floats) -> bool:
     """A block has the words of another one but for one that it lacks."""
     same = (ours == theirs) | (np.isnan(ours) & np.isnan(theirs))
     return bool(np.count_nonzero(~same) == 1 and np.isnan(ours[~same][0]))
-
-
-def _is_slip(trace: Trace, row: int, model: int, values: Floats) -> bool:
-    """A block of a contour leads elsewhere than that of the model, since a word is missing or its number is a slip."""
-    if trace.compensation.cancels[row] or not abs(trace.path.end[row] - trace.path.end[model]) > _APART:
-        return False
-    ours, theirs = values[:, row], values[:, model]
-    if _lacks_word(ours, theirs):
-        return True
-    odd = np.flatnonzero((ours != theirs) & ~(np.isnan(ours) & np.isnan(theirs)))
-    if len(odd) != 1 or np.isnan(theirs[odd[0]]):
-        return False
-    from polarcheck.columns.words.slips import plain_number, slip_of  # few passes differ
-
-    slip = slip_of(plain_number(float(ours[odd[0]])), float(theirs[odd[0]]), _ROUNDING)
-    return slip is not None and slip.plain
