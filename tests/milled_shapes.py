@@ -265,7 +265,8 @@ def slot(draw: Draw, grid: Grid) -> Contour:
 
 def keyway(draw: Draw, grid: Grid) -> Contour:
     bar, half = grid(30, 50), grid(3, 6)
-    far, bottom = math.ceil(bar / 2) + 8.0, round(bar / 2 - half - draw.uniform(2, 6), 0)
+    # No cutter comes to X0, where C has no angle.
+    far, bottom = math.ceil(bar / 2) + 8.0, max(round(bar / 2 - half - draw.uniform(2, 6), 0), half + 0.5)
     if draw.random() < 0.6:
         middle = complex(bottom, 0)
         turn = [Piece(middle + 1j * half), Piece(middle - half, middle), Piece(middle - 1j * half, middle)]

@@ -25,11 +25,12 @@ def section(tool: int, sides: int, across: float, c: float = 0, z: float = -6, *
     return "\n".join([call, f"G1 G41 {begin} F{500 / unit:.2f}", f"Z{deep}", *rest, retract])
 
 
-def losses(*sections: str, unit: int = 21) -> list[float]:
+def losses(*sections: str, unit: int = 21, bar: float | None = None) -> list[float]:
     program = "\n".join(["O1", f"G{unit} G98", "G28 H0", *sections, "M30"])
     radii = (4 / 25.4, 3 / 25.4) if unit == 20 else (4, 3)
     tools = (f"{number}:radius={radius:.5f},nose=0" for number, radius in enumerate(radii, 1))
-    report = report_of(f"{program}\n", "fanuc-30i", *tools)
+    job = {"stock": {"diameter": bar}} if bar else {}
+    report = report_of(f"{program}\n", "fanuc-30i", *tools, job=job)
     return [finding.values["depth"] for finding in report.findings if finding.rule == "contour-already-cut-into"]
 
 
@@ -193,6 +194,11 @@ def test_an_eccentric_contour_at_another_c_is_told() -> None:
 )
 def test_allowances_clearing_and_steps_are_sound(sections: list[str]) -> None:
     assert losses(*sections) == []
+
+
+def test_where_the_bar_is_as_large_as_the_contour_nothing_can_be_lost() -> None:
+    assert losses(milled(1, circle(37)), milled(2, circle(36)), bar=36) == []
+    assert losses(milled(1, circle(35)), milled(2, circle(35.6)), bar=36) == [pytest.approx(0.3, abs=0.005)]
 
 
 def test_an_allowance_in_z_is_one_floor_and_an_unknown_radius_is_not_evaluated() -> None:

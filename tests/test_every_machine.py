@@ -58,7 +58,7 @@ HANDS = {
     "mitsubishi-m700": Hand("O1\nG17 G90 G94 G40 G97\nT0101", factor=1, outside=1, steps=""),
     "haas-lathe": Hand("O1\nG17 G40 G97 G98\nT0101\nM154\nM133 P1000", "G112", "G113", "Y", 1, steps="UV"),
     "okuma-osp": Hand(
-        "O1\nG97 G40 G94\nM110\nT0101\nM13",
+        "O1\nG97 G40 G94\nM110\nT0101\nSB=1000 M13",
         "G137 C0",
         "G136",
         "Y",

@@ -6,6 +6,7 @@ import cmath
 import functools
 import math
 import random
+from collections.abc import Sequence
 
 import pytest
 from cases import looped
@@ -65,9 +66,16 @@ def test_most_slips_in_a_regular_contour_are_noticed(name: str) -> None:
     assert noticed >= 0.7 * written
 
 
-@pytest.mark.nightly
-def test_what_differs_on_purpose_is_silent() -> None:
-    for seed in range(40):
+@pytest.mark.parametrize(
+    "seeds",
+    [
+        # A cross with one longer arm: with another corner, one that is written would lie on a side.
+        pytest.param((15, 26), id="unlike arms"),
+        pytest.param(range(40), id="all", marks=pytest.mark.nightly),
+    ],
+)
+def test_what_differs_on_purpose_is_silent(seeds: Sequence[int]) -> None:
+    for seed in seeds:
         draw = random.Random(seed)  # noqa: S311
         contour, how = draw.choice(MEANT)(draw), style(draw)
         found = findings(blocks_of(contour, how), contour, how)

@@ -324,7 +324,18 @@ class _Search:
         for index in range(len(places)):
             for corner in np.argsort(detour[index])[:_GAPS].tolist():
                 for turns in dict.fromkeys((0, self._usual_arc[0])):
-                    yield self._with_block(corner, complex(places[index]), turns)
+                    trial = self._with_block(corner, complex(places[index]), turns)
+                    if not self._flattens(trial):
+                        yield trial
+
+    def _flattens(self, trial: _Trial) -> bool:
+        """A corner beside the additional block lies on a straight side then: nobody wrote a corner of no use."""
+        middle = trial.at + np.array([-1, 1])
+        middle = middle[(middle > 0) & (middle < len(trial.point) - 1)]
+        into, out = (trial.point[middle + step] - trial.point[middle + step - 1] for step in (0, 1))
+        lines = (trial.loop.turns[middle - 1] == 0) & (trial.loop.turns[middle] == 0)
+        aside = np.abs((into.conj() * out).imag) <= self.tolerance * np.abs(into + out)
+        return bool((lines & aside & ((into.conj() * out).real > 0)).any())
 
     @cached_property
     def _usual_arc(self) -> tuple[int, float]:

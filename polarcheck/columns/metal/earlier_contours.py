@@ -194,11 +194,13 @@ class EarlierContours(Columns, frozen=True):
         return self._lost_block(later, gone) if like.offset - earlier.left < -_SAME_SIZE else 0.0
 
     def _gone(self, contour: Contour, other: Contour) -> Floats:
-        """How far points of the other contour lie beyond what the first one leaves [mm], where its cutter reaches."""
+        """How far points of the other contour lie beyond what the first one leaves [mm], where it cuts metal."""
         from polarcheck.geometry.polygons.lost_walls import beyond
 
-        gone = beyond(other.samples.point, contour.standing) - contour.left
-        return np.where(gone <= 2 * contour.radius, gone, 0.0)
+        point = other.samples.point
+        gone = beyond(point, contour.standing) - contour.left
+        is_rim = np.abs(point) >= self.overcuts.bar / 2 - _SAME_SIZE
+        return np.where((gone <= 2 * contour.radius) & ~is_rim, gone, 0.0)
 
     @cached_property
     def _likenesses(self) -> dict[tuple[int, int], Likeness | None]:
