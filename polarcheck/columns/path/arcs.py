@@ -22,6 +22,8 @@ from polarcheck.program.reading.translation import spans
 
 #: One arc alone speaks for the other reading of X where it misses its circle by this many tolerances.
 _CLEARLY = 10
+#: An arc whose center is nearer to the center of C than this is about it [mm].
+_ABOUT_CENTER = 0.02
 #: From so many arcs on it is no single word that is wrong.
 _SEVERAL = 3
 
@@ -125,6 +127,11 @@ class Arcs(Columns, frozen=True):
             blocks = np.searchsorted(run.text.blocks.start, begins, side="right") - 1
             mask = (self.radius < 0) & is_among(run.block, blocks.tolist())
         return np.asarray(mask)
+
+    @cached_property
+    def is_about_center(self) -> Mask:
+        """Arcs about the center of C, as what is left of a round bar has them."""
+        return np.asarray(self.trace.path.is_arc & (np.abs(self.trace.path.center) <= _ABOUT_CENTER))
 
     @cached_property
     def misfit_section(self) -> Rows:

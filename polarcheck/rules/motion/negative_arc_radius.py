@@ -25,7 +25,8 @@ def negative_arc_radius(arcs: Arcs, tangency: Tangency) -> Mask:
 
     Where the control takes it, a negative R means the longer of the two arcs, of more than 180 degrees. Older lathe
     controls stop with an alarm. Two arcs of less than 180 degrees, or I and J, are understood by all. Where the control
-    takes it and the arc is tangent to the blocks on both sides, the longer one is meant, and nothing is reported.
+    takes it and the arc is tangent to the blocks on both sides, or about the center of C, the longer one is meant, and
+    nothing is reported.
 
     Source: FANUC alarm 023; B-62754EN/01, p. 67.
 
@@ -55,6 +56,18 @@ def negative_arc_radius(arcs: Arcs, tangency: Tangency) -> Mask:
         G3 X20. C20. I0. J10.
         G1 X60.
         G13.1
+
+    Good, tool 1:radius=4, machine gsk-988:
+
+        T0101
+        G98 G0 X70. C0
+        G12.1
+        G1 G42 X30.6 F200
+        C11.265
+        G3 X30.6 C-11.265 R-19.
+        G1 C0
+        G40 X70.
+        G13.1
     """
-    negative = (arcs.radius < 0) & ~arcs.is_larger_by_word
+    negative = (arcs.radius < 0) & ~arcs.is_larger_by_word & ~arcs.is_about_center
     return arcs.negative_stops | (negative & ~tangency.is_tangent & ~tangency.misfits)
