@@ -29,6 +29,8 @@ from polarcheck.geometry.tolerances import ZERO
 TOLERANCE = 0.002
 #: From this number of moves, or chords of them, a loop is searched for repeated passes.
 _MANY = 2000
+#: Moves of the path that are looked at together, but for the last loop of them.
+_AT_ONCE = 20_000
 #: Chords of a loop that are compared as one line, those of them that are compared first; points of lines between two
 #: checks of the time limit.
 _LONG_RUN, _SAMPLE, _PIECES = 1024, 8, 2048
@@ -65,13 +67,7 @@ def overcuts(
     the contour, and only cuts deeper than the slant itself count. A ramp that comes from the air does not cut a part
     round the center beyond the air radius.
     """
-    rows = np.flatnonzero(is_ramp | first_of_its_kind(path)) if _is_long(path) else np.arange(len(path))
-    chords = segments(path[rows], tolerance)
-    walls = _once(contour, tolerance)
-    chords = Segments(chords.start, chords.end, rows[chords.move], chords.loop)
-    chords = chords[(radius[chords.move] > tolerance) & np.isin(chords.loop, walls.loop)]
-    repeats = ~first_of_its_kind(path)[chords.move] if _is_long(chords) else np.zeros(len(chords), bool)
-    chords = chords[_comes_close(walls, chords, repeats, is_ramp[chords.move], radius[chords.move] - tolerance)]
+    chords = _close_chords(contour, path, radius, is_ramp, tolerance)
     if not len(chords):
         return Cuts.none(), np.zeros(0, np.int64), None
     loops, group = np.unique(chords.loop, return_inverse=True)
@@ -134,6 +130,34 @@ def _left_at_level(
 
 
 # ---- which loops to look at ----
+
+
+def _close_chords(contour: Curves, path: Curves, radius: Floats, is_ramp: Mask, tolerance: float) -> Segments:
+    """The chords of the path that come close to a wall, loop after loop; some loops at a time, which bounds memory."""
+    count = 2 + max(path.loop.max(initial=0), contour.loop.max(initial=0))
+    share = np.cumsum(np.bincount(path.loop + 1, minlength=count)) // _AT_ONCE
+    are_long, close = _is_long(path), []
+    for number in range(int(share[-1]) + 1):
+        rows, walls = (np.flatnonzero(share[curves.loop + 1] == number) for curves in (path, contour))
+        one = path[rows], radius[rows], is_ramp[rows]
+        chords = _close_chords_of_some(_once(contour[walls], tolerance), *one, tolerance, are_long)
+        close.append(msgspec.structs.replace(chords, move=rows[chords.move]))
+    return Segments.concatenated(close)
+
+
+def _close_chords_of_some(
+    walls: Segments, path: Curves, radius: Floats, is_ramp: Mask, tolerance: float, are_long: bool
+) -> Segments:
+    """The same of all these walls and moves; are_long: among all loops is one that may hold repeated passes."""
+    is_first = first_of_its_kind(path) if are_long else np.ones(len(path), bool)
+    rows = np.flatnonzero(is_ramp | is_first)
+    chords = segments(path[rows], tolerance)
+    chords = msgspec.structs.replace(chords, move=rows[chords.move])
+    chords = chords[(radius[chords.move] > tolerance) & np.isin(chords.loop, walls.loop)]
+    if not are_long and _is_long(chords):
+        is_first = first_of_its_kind(path)
+    limit = radius[chords.move] - tolerance
+    return chords[_comes_close(walls, chords, ~is_first[chords.move], is_ramp[chords.move], limit)]
 
 
 def _is_long(curves: Curves | Segments) -> bool:

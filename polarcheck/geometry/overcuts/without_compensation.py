@@ -25,6 +25,8 @@ from polarcheck.geometry.tolerances import ROUNDING, ZERO
 _SAME_SUM = 1e-3
 #: Up to this number of pairs of a wall and a chord, all pairs are compared, without a tree.
 _PAIRS = 4_000_000
+#: Pairs that are compared together, but for the last chord of them.
+_PAIRS_AT_ONCE = 100_000
 #: Ways between two checks of the time limit.
 _BATCH = 1024
 #: Only this number of contour depths per section is checked, from the deepest up.
@@ -198,17 +200,17 @@ def _nearby(curves: Curves, chords: Segments, group: Rows, radius: Floats) -> Ro
     count = np.bincount(curves.loop, minlength=len(radius))[group]
     if count.sum() > _PAIRS:
         return np.arange(len(curves))
-    curve, chord = members(curves.loop, group)
-    long = reach_from_start(curves)
-    far = curves.start[curve] - start[chord]
-    apart = np.abs(far)
-    nearest = np.minimum.reduceat(apart, np.cumsum(count) - count)
-    along = end - start
-    length = np.maximum(np.abs(along), ZERO)
-    foot = np.clip((far * (along / length)[chord].conj()).real, 0, length[chord])
-    aside = np.abs(far - foot * (along / length)[chord])
-    is_close = (apart - long[curve] <= nearest[chord] + ROUNDING) | (
-        aside - long[curve] <= radius[group][chord] + ROUNDING
-    )
-    chosen = mask_at(len(curves), curve[is_close])
+    chosen, long = np.zeros(len(curves), bool), reach_from_start(curves)
+    for some in np.split(np.arange(len(group)), np.flatnonzero(np.diff(np.cumsum(count) // _PAIRS_AT_ONCE)) + 1):
+        curve, chord = members(curves.loop, group[some])
+        from_, along = start[some], (end - start)[some]
+        far = curves.start[curve] - from_[chord]
+        apart = np.abs(far)
+        nearest = np.minimum.reduceat(apart, np.cumsum(count[some]) - count[some])
+        length = np.maximum(np.abs(along), ZERO)
+        foot = np.clip((far * (along / length)[chord].conj()).real, 0, length[chord])
+        aside = np.abs(far - foot * (along / length)[chord])
+        is_close = apart - long[curve] <= nearest[chord] + ROUNDING
+        is_close |= aside - long[curve] <= radius[group[some]][chord] + ROUNDING
+        chosen[curve[is_close]] = True
     return np.flatnonzero(chosen)
