@@ -222,19 +222,19 @@ class Overcuts:
         walls = walls[~np.isin(walls.loop, far)]
         return walls, self.trace.compensation.side[walls.row] == Side.LEFT
 
-    @cached_property
+    @property
     def path(self) -> tuple[Curves, Mask]:
         """
         The moves of the tool center in offset mode, the ramps at the depth of their contour, and a mask of the ramps.
 
-        Each move has the number of its loop. Loops beyond all bounds are left out.
+        Each move has the number of its loop. Loops beyond all bounds are left out. Not stored: it is large.
         """
         path, is_ramp = self._whole_path
         skipped = self.beyond_bounds.loop
         within = ~np.isin(path.loop, skipped)
         return (path[within], is_ramp[within]) if len(skipped) else (path, is_ramp)
 
-    @cached_property
+    @property
     def _whole_path(self) -> tuple[Curves, Mask]:
         tool = self.tool_center.moves
         is_ramp = (tool.phase == Phase.START_UP) | (tool.phase == Phase.CANCEL)
@@ -256,7 +256,7 @@ class Overcuts:
         if self._keeps_away:
             return nothing
         path, is_ramp = self.path
-        radius = self._radius_of_path
+        radius = self._radius_of(path)
         tolerance = self.trace.machine.compensation.overcut_tolerance
         walls, left = self.walls
         from polarcheck.geometry.overcuts import own_loop
@@ -265,10 +265,9 @@ class Overcuts:
         cuts, tangled, parts = own_loop.overcuts(walls, left, *around, path, radius, is_ramp, tolerance, self.bar)
         return CutsOfRows.of(cuts, path, walls), is_ramp[cuts.move], tangled, parts
 
-    @property
-    def _radius_of_path(self) -> Floats:
-        """For each move of `path` its R [mm]; with an allowance, the cutter stays away from the contour."""
-        return np.abs((self.radius - self.trace.compensation.allowance)[self.path[0].row])
+    def _radius_of(self, path: Curves) -> Floats:
+        """For each of these moves of `path` its R [mm]; with an allowance, the cutter stays away from the contour."""
+        return np.abs((self.radius - self.trace.compensation.allowance)[path.row])
 
     @cached_property
     def _keeps_away(self) -> bool:
@@ -276,7 +275,8 @@ class Overcuts:
         from polarcheck.geometry.overcuts.clearance import keeps_away
 
         tolerance = self.trace.machine.compensation.overcut_tolerance
-        return bool(keeps_away(self.walls[0], self.path[0], self._radius_of_path, tolerance))
+        path, _ = self.path
+        return bool(keeps_away(self.walls[0], path, self._radius_of(path), tolerance))
 
     @property
     def has_areas(self) -> bool:

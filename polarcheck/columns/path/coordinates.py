@@ -121,6 +121,8 @@ class Coordinates(Lookups, frozen=True):
 
     def angle_of(self, address: str) -> Floats:
         """A word as an angle [deg]."""
+        if self._angles is self.run.words.value:
+            return self.blocks.word(address)
         return self._column(f"angle {address}", lambda: self.blocks.in_rows(address, self._angles))
 
     @cached_property

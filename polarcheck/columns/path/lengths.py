@@ -102,16 +102,20 @@ class Lengths(Lookups, frozen=True):
 
     @cached_property
     def _lengths(self) -> Floats:
-        return self.coordinates.meant(self.least_increment[self.run.row])
+        least = self.least_increment
+        return self.coordinates.meant(least[0] if least.strides == (0,) else least[self.run.row])
 
     def length_of(self, address: str) -> Floats:
         """A word as a length [mm], as written: a diameter stays one."""
         return self._column(f"length {address}", lambda: self._length_of(address))
 
     def _length_of(self, address: str) -> Floats:
-        if not len(self.blocks.word_indices(address)):
-            return self.blocks.in_rows(address, self._lengths)
-        return self.blocks.in_rows(address, self._lengths) * self.scale
+        if self._lengths is self.run.words.value:
+            lengths = self.blocks.word(address)
+        else:
+            lengths = self.blocks.in_rows(address, self._lengths)
+        is_in_mm = self.scale.strides == (0,) and self.scale[0] == 1.0
+        return lengths if is_in_mm or not len(self.blocks.word_indices(address)) else lengths * self.scale
 
     @cached_property
     def x_factor(self) -> Floats:
