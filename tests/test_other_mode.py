@@ -13,9 +13,9 @@ from programs import ROOT, machine_of, report_of, said, tables_of
 
 from polarcheck.checking import survey
 from polarcheck.columns.modes import other_mode
+from polarcheck.foundation.errors import enumerated
 from polarcheck.foundation.finding import FileReport, Finding
 from polarcheck.program.machines import profiles
-from polarcheck.rules.remedies import enumerated
 
 RULE = "polar-code-of-another-control"
 SAMPLES = ROOT / "sample_programs"

@@ -11,6 +11,7 @@ import numpy as np
 from polarcheck.columns.filling import fill_down
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Rows
+from polarcheck.foundation.errors import first_of
 from polarcheck.program.execution.variable_names import FIRST_PARAMETER, FIRST_VARIABLE
 from polarcheck.program.machines.machine import Machine
 from polarcheck.rules.places import block_in_line
@@ -85,8 +86,7 @@ def value_not_known(trace: Trace, variables: Sequence[int | None], word: str) ->
     if not more:
         return f"#{variable} has no value for {word}: give [run.variables] {variable} = ..., or write the number"
     names = [f"#{number}" for number in variables if number is not None]
-    listed = ", ".join(names[:_LISTED]) + (f" and {len(names) - _LISTED} more" if len(names) > _LISTED else "")
-    return f"{listed} have no value, as for {word}: give them in [run.variables]"
+    return f"{first_of(names, _LISTED)} have no value, as for {word}: give them in [run.variables]"
 
 
 def is_argument(machine: Machine, variable: int) -> bool:

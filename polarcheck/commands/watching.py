@@ -20,7 +20,7 @@ from polarcheck.commands.exit_codes import CLEAN, COULD_NOT_RUN
 from polarcheck.commands.options import option
 from polarcheck.commands.output import is_terminal, say
 from polarcheck.foundation.ending import INTERRUPTED
-from polarcheck.foundation.errors import PolarcheckError, UsageError
+from polarcheck.foundation.errors import PolarcheckError, UsageError, first_of
 from polarcheck.program.reading.files import State, state
 
 if TYPE_CHECKING:
@@ -182,9 +182,7 @@ def _run(run: Callable[[Seen], int], seen: Seen, changed: Sequence[str], *, clea
         # A job file beside the programs is seen under two paths: its own, and that of the folder.
         names = list({os.path.realpath(path): path for path in sorted(changed, key=len, reverse=True)}.values())
         names.sort()
-        named = ", ".join(names[:_NAMED])
-        more = len(names) - _NAMED
-        say(f"{named}{f' and {more} more' if more > 0 else ''} changed, {time.strftime('%H:%M:%S')}")
+        say(f"{first_of(names, _NAMED)} changed, {time.strftime('%H:%M:%S')}")
     return run(seen)
 
 

@@ -18,7 +18,7 @@ What can go wrong on our side. What is wrong in a program is a finding, never an
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 __name__ = "polarcheck.errors"  # the public name of the module, which tracebacks and filters of warnings show
@@ -138,6 +138,29 @@ def escaped(number: int) -> str:
     return f"\\x{number:02x}" if number < 256 else f"\\u{number:04x}" if number < 65536 else f"\\U{number:08x}"
 
 
+def enumerated(names: Iterable[str], last: str = "and") -> str:
+    """Return names in words: `G1, G2 and G3`. last: the word before the last one."""
+    *others, final = names
+    return f"{', '.join(others)} {last} {final}" if others else final
+
+
+def first_of(names: Sequence[str], most: int, separator: str = ", ") -> str:
+    """Return the first names, and how many more there are: `a, b and 3 more`."""
+    more = f" and {len(names) - most} more" if len(names) > most else ""
+    return separator.join(names[:most]) + more
+
+
+def consecutive(numbers: Iterable[int]) -> list[list[int]]:
+    """Return rising numbers in groups, each of numbers that follow each other."""
+    groups: list[list[int]] = []
+    for number in numbers:
+        if groups and number == groups[-1][-1] + 1:
+            groups[-1].append(number)
+        else:
+            groups.append([number])
+    return groups
+
+
 def suggestion(wrong: str, candidates: Iterable[str], most: int = 3) -> str:
     """
     Return a hint such as `; did you mean fanuc-30i?`; empty if no candidate is similar.
@@ -154,5 +177,4 @@ def suggestion(wrong: str, candidates: Iterable[str], most: int = 3) -> str:
         near = difflib.get_close_matches(word, names, 1)
     if not near and len(word) >= _LEAST:
         near = [name for name in names if word in name]
-    *rest, last = [names[name] for name in near[:most]] or [""]
-    return f"; did you mean {', '.join(rest)}{' or ' if rest else ''}{last}?" if last else ""
+    return f"; did you mean {enumerated([names[name] for name in near[:most]], 'or')}?" if any(near) else ""

@@ -6,6 +6,7 @@ from typing import Any, TypeAlias
 
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Mask
+from polarcheck.foundation.errors import enumerated
 from polarcheck.program.machines.code_tables import code_numbers, spelled
 from polarcheck.rules.places import Place
 from polarcheck.rules.quantity import Quantity, in_row
@@ -68,8 +69,7 @@ class Hit:
         if not lines:
             return ""
         names = [*map(str, lines[:_LINES]), *([f"{len(lines) - _LINES} more"] if len(lines) > _LINES else [])]
-        listed = f"{', '.join(names[:-1])} and {names[-1]}" if len(names) > 1 else names[0]
-        return f"; likewise in line{'s' if len(lines) > 1 else ''} {listed}"
+        return f"; likewise in line{'s' if len(lines) > 1 else ''} {enumerated(names)}"
 
     @property
     def radius(self) -> float:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -29,12 +28,6 @@ def place(machine: Machine, key: str) -> str:
 def is_chosen(machine: Machine, job: Job) -> bool:
     """Return True if somebody has chosen the machine: it is not the one that is taken where nobody does."""
     return job.machine is not None or machine.title != profiles.load(profiles.DEFAULT).machine.title
-
-
-def enumerated(names: Sequence[str], last: str) -> str:
-    """Join names: `G1, G2 or G3`. last: the word before the last one."""
-    *others, final = names
-    return f"{', '.join(others)} {last} {final}" if others else final
 
 
 def option_or_place(machine: Machine, key: str) -> str:

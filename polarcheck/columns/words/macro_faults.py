@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from polarcheck.foundation.arrays import Mask, cached_property, is_among
+from polarcheck.foundation.errors import consecutive, first_of
 from polarcheck.program.execution.kinds import FaultKind, RemarkKind
 from polarcheck.program.execution.programs import find_programs
 from polarcheck.program.execution.run import Remark, Run
@@ -236,9 +237,8 @@ class Faults:
         """The other missing programs that a finding stands for: `; O7002 to O7038 are missing as well`; else empty."""
         if program is None or len(self._missing) <= _ONE_BY_ONE:
             return ""
-        spans = _spans([name for name in self._missing if name != program])
-        more = f" and {len(spans) - _NAMED} more" if len(spans) > _NAMED else ""
-        return f"; {', '.join(spans[:_NAMED])}{more} are missing as well"
+        others = first_of(_spans([name for name in self._missing if name != program]), _NAMED)
+        return f"; {others} are missing as well"
 
     def reason(self, index: int) -> str:
         """What is wrong, in words."""
@@ -259,14 +259,8 @@ def reason_of(remark: Remark, machine: Machine) -> str:
 def _spans(names: Sequence[str]) -> list[str]:
     """Names of programs, numbers that follow each other in one span: `O7002 to O7038`, `<SUB>`."""
     numbers = sorted(int(name[1:]) for name in names if name[1:].isdigit())
-    spans: list[list[int]] = []
-    for number in numbers:
-        if spans and number == spans[-1][-1] + 1:
-            spans[-1].append(number)
-        else:
-            spans.append([number])
     shown = [
         f"O{span[0]:04d} to O{span[-1]:04d}" if len(span) > 2 else ", ".join(f"O{one:04d}" for one in span)
-        for span in spans
+        for span in consecutive(numbers)
     ]
     return [*shown, *(name for name in names if not name[1:].isdigit())]

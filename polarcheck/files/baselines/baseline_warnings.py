@@ -9,7 +9,7 @@ from pathlib import Path
 
 from polarcheck.files.baselines.baseline import Baseline, Leftover
 from polarcheck.files.baselines.baseline_file import Contents
-from polarcheck.foundation.errors import suggestion
+from polarcheck.foundation.errors import first_of, suggestion
 from polarcheck.program.reading.files import display_path
 from polarcheck.rules.rule import load_all
 
@@ -51,7 +51,7 @@ def of_leftovers(path: Path, baseline: Baseline) -> Iterator[str]:
     moved = sorted((old, new) for new, old in baseline.moved.items() if old)
     if moved:
         were = f"{_counted(len(moved), 'file')} {'was' if len(moved) == 1 else 'were'}"
-        named = _listed(f"{old} is {new}" for old, new in moved)
+        named = first_of([f"{old} is {new}" for old, new in moved], _NAMED)
         yield f"{name}: {were} moved: {named}; `polarcheck baseline update` takes the new paths"
     # Unknown rules have a line of their own.
     leftovers = [leftover for leftover in baseline.leftovers() if leftover.entry.rule in load_all()]
@@ -59,7 +59,7 @@ def of_leftovers(path: Path, baseline: Baseline) -> Iterator[str]:
         count = sum(leftover.missing for leftover in leftovers)
         occur = "occurs" if count == 1 else "occur"
         yield (
-            f"{name}: {_counted(count, 'known finding')} no longer {occur}: {_listed(_places(leftovers))}; "
+            f"{name}: {_counted(count, 'known finding')} no longer {occur}: {first_of(_places(leftovers), _NAMED)}; "
             f"`polarcheck baseline prune` drops {_them(count)}"
         )
 
@@ -73,12 +73,6 @@ def _places(leftovers: Iterable[Leftover]) -> list[str]:
             leftover.missing
         )
     return [f"{location} ({count})" if count > 1 else location for location, count in counts.items()]
-
-
-def _listed(texts: Iterable[str]) -> str:
-    entries = list(texts)
-    more = len(entries) - _NAMED
-    return ", ".join(entries[:_NAMED]) + (f" and {more} more" if more > 0 else "")
 
 
 def _counted(count: int, noun: str) -> str:

@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 from polarcheck.files.settings.job_layers import Merged
 from polarcheck.files.settings.selection import Names, Rules, select
+from polarcheck.foundation.errors import first_of
 from polarcheck.program.machines.job import level_of, names_of, reason_of
 from polarcheck.program.machines.machine import Machine
 from polarcheck.program.machines.profiles import Profile
@@ -133,8 +134,7 @@ class _Finder:
     def _cause(self, key: str, names: Sequence[str]) -> str:
         """Return the option or variable with its value, shortened."""
         option = "--severity" if key == "severities" else f"--{key}"
-        more = f" and {len(names) - _NAMED} more" if len(names) > _NAMED else ""
-        return f"{self._named.get(key) or f'{self._options.spelled(option)} '}{','.join(names[:_NAMED])}{more}"
+        return f"{self._named.get(key) or f'{self._options.spelled(option)} '}{first_of(names, _NAMED, ',')}"
 
     def _without_reason(self, key: str, form: str) -> str:
         # The file alone: to find the line, its text would be read once more for each check.

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from polarcheck.files.settings import job_files
 from polarcheck.files.settings.job_files import JobFile, Nearest, Part
-from polarcheck.foundation.errors import JobError
+from polarcheck.foundation.errors import JobError, enumerated, first_of
 
 #: The most files in a line on them.
 _NAMED = 3
@@ -62,19 +62,9 @@ def warnings(files: Iterable[JobFile], nearest: Nearest) -> list[str]:
         if outer is not None:
             names.setdefault(outer, []).append(str(file.path))
     return [
-        f"{_first(inner)}: {_and(outer.keys)} of {outer.outer} {'does' if len(outer.keys) == 1 else 'do'} not apply "
+        f"{first_of(inner, _NAMED)}: {enumerated(outer.keys)} of {outer.outer} "
+        f"{'does' if len(outer.keys) == 1 else 'do'} not apply "
         f'here; extend = ".." takes {"it" if len(outer.keys) == 1 else "them"} over, root = true says that this is '
         "meant"
         for outer, inner in names.items()
     ]
-
-
-def _first(names: Sequence[str]) -> str:
-    """`a, b, c and 4 more`."""
-    more = len(names) - _NAMED
-    return ", ".join(names[:_NAMED]) + (f" and {more} more" if more > 0 else "")
-
-
-def _and(names: Sequence[str]) -> str:
-    *first, last = names
-    return f"{', '.join(first)} and {last}" if first else last

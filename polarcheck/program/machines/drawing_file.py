@@ -15,7 +15,7 @@ from typing import Any
 import msgspec
 
 from polarcheck.foundation import bounded
-from polarcheck.foundation.errors import JobError
+from polarcheck.foundation.errors import JobError, first_of
 from polarcheck.program.machines.chains import joined
 from polarcheck.program.machines.drawn_curves import (
     MOST_POINTS,
@@ -226,7 +226,8 @@ class _Layers:
         missing = [name for name in named if name.lower() not in self._spelled]
         if missing:
             names = sorted((name for name in self._spelled.values() if name.lower() != "defpoints"), key=str.lower)
-            raise NoDrawingError(f"has no layer {missing[0][:_LONGEST_NAME]}; its layers are {_listed(names)}")
+            listed = first_of([name[:_LONGEST_NAME] for name in names], _MOST_NAMES)
+            raise NoDrawingError(f"has no layer {missing[0][:_LONGEST_NAME]}; its layers are {listed}")
 
     def reason(self, entity: Any, kind: str, layer: str) -> str:
         """Why an entity on a layer is ignored, for the message; empty if it is not."""
@@ -240,13 +241,6 @@ class _Layers:
         if self._named and name not in self._named:
             return f"on layer {self._spelled.get(name, layer)[:_LONGEST_NAME]}"
         return "with a broken line" if (name in self._broken if line == "BYLAYER" else _is_broken(line)) else ""
-
-
-def _listed(names: Sequence[str]) -> str:
-    """Names for a message, of many the first."""
-    more = len(names) - _MOST_NAMES
-    listed = ", ".join(name[:_LONGEST_NAME] for name in names[:_MOST_NAMES])
-    return f"{listed} and {more} more" if more > 0 else listed
 
 
 #: How many names of layers a message shows, and how much of each [characters].

@@ -9,7 +9,8 @@ from typing import Annotated, Literal
 
 import msgspec
 
-from polarcheck.program.machines.value_types import KeyedError, are_numbers, listed
+from polarcheck.foundation.errors import enumerated
+from polarcheck.program.machines.value_types import KeyedError, are_numbers
 
 #: Sides of each shape that is regular and has a name.
 SIDES: Mapping[str, int] = MappingProxyType(
@@ -118,16 +119,17 @@ class Part(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
         if self.layers:
             raise KeyedError("layers", "a drawing has layers, a shape has none")
         if self.shape is None:
-            raise KeyedError("", f"expected drawing = a DXF file, or shape = {listed(_KEYS)}")
+            raise KeyedError("", f"expected drawing = a DXF file, or shape = {enumerated(_KEYS, 'or')}")
+        keys = _KEYS[self.shape]
         for key in given:
-            if key not in _KEYS[self.shape]:
-                raise KeyedError(key, f"no key of the shape {self.shape}, which has {listed(_KEYS[self.shape])}")
+            if key not in keys:
+                raise KeyedError(key, f"no key of the shape {self.shape}, which has {enumerated(keys, 'or')}")
         for alternatives in _NEEDED[self.shape]:
             stated = [key for key in alternatives if key in given]
             if not stated:
-                raise KeyedError("", f"the shape {self.shape} needs {listed(alternatives)}")
+                raise KeyedError("", f"the shape {self.shape} needs {enumerated(alternatives, 'or')}")
             if len(stated) > 1:
-                raise KeyedError(stated[1], f"the shape {self.shape} has {listed(stated)}, not both")
+                raise KeyedError(stated[1], f"the shape {self.shape} has {enumerated(stated, 'or')}, not both")
         if "corner_radius" in given and "chamfer" in given:
             raise KeyedError("chamfer", "a corner has corner_radius or chamfer, not both")
         self._check_room()

@@ -7,13 +7,13 @@ from __future__ import annotations
 
 import math
 import types
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from typing import Annotated, Any, Literal, TypeVar, Union, get_args, get_origin
 
 import msgspec
 
 from polarcheck.foundation.decoding import converted
-from polarcheck.foundation.errors import UsageError, suggestion
+from polarcheck.foundation.errors import UsageError, enumerated, suggestion
 from polarcheck.program.machines.toml_text import number_hint
 
 #: Key of `extra` in msgspec.Meta: the expected value in words, where the type and its bounds do not say it well.
@@ -195,7 +195,7 @@ def _expected(kind: Any) -> str:
         texts = [meta.extra[EXPECTED] for meta in metas if meta.extra and EXPECTED in meta.extra]
         return str(texts[0]) if texts else _expected(arguments[0]) + "".join(map(_bounds, metas))
     if get_origin(kind) is Literal:
-        return listed(map(str, arguments))
+        return enumerated(map(str, arguments), "or")
     if get_origin(kind) in (list, tuple):
         of_what = _PLURAL.get(_bare(arguments[0]), "values")
         return (
@@ -226,12 +226,6 @@ def _beyond(part: _Part) -> str:
 def _named(limit: float) -> str:
     """The limit as text; SMALLEST is 0."""
     return f"{limit:g}" if limit != SMALLEST else "0"
-
-
-def listed(names: Iterable[str]) -> str:
-    """`a, b or c`."""
-    *first, last = names
-    return f"{', '.join(first)} or {last}" if first else last
 
 
 def display(value: Any) -> str:

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 import msgspec
 
 from polarcheck.checking.survey import StatedOffset, Survey
+from polarcheck.foundation.errors import first_of
 from polarcheck.foundation.states import MM_PER_INCH
 from polarcheck.program.machines import profiles
 from polarcheck.program.reading import files
@@ -213,9 +214,7 @@ def _length(millimeters: float, survey: Survey) -> str:
 
 
 def _paths(paths: Sequence[str]) -> str:
-    named = ", ".join(files.display_path(path) for path in paths[:_NAMED])
-    more = len(paths) - _NAMED
-    return f"called by {named}{f' and {more} more' if more > 0 else ''}"
+    return f"called by {first_of([*map(files.display_path, paths)], _NAMED)}"
 
 
 def _order(key: str) -> tuple[int, str]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
+from polarcheck.foundation.errors import enumerated, first_of
 from polarcheck.foundation.finding import radius_origin
 from polarcheck.reports import counted
 from polarcheck.rules.quantity import Quantity
@@ -22,7 +23,7 @@ def resting(file: FileReport) -> Iterator[str]:
     if not file.looked_at:
         return
     outside = [part for part in file.looked_at if part != _INSIDE]
-    named = f"{', '.join(outside[:-1])} and {outside[-1]} only" if len(outside) > 1 else "".join(outside)
+    named = f"{enumerated(outside)} only" if len(outside) > 1 else "".join(outside)
     looked_at = f"{_INSIDE}; outside them {named}" if _INSIDE in file.looked_at else named
     yield f"rests on {file.machine}; looked at: {looked_at}"
     for section in file.polar_sections[:_LISTED]:
@@ -42,9 +43,8 @@ def resting(file: FileReport) -> Iterator[str]:
 def _doubtful(file: FileReport) -> str:
     """Name keys of the machine that no manual proves, the first of them where there are many."""
     parameters = file.doubtful_parameters or {}
-    listed = [f"{key} (parameter {parameters[key]})" if key in parameters else key for key in file.doubtful[:_LISTED]]
-    more = f" and {len(file.doubtful) - _LISTED} more" if len(file.doubtful) > _LISTED else ""
-    return f"doubtful in {file.machine}: {', '.join(listed)}{more}"
+    keys = [f"{key} (parameter {parameters[key]})" if key in parameters else key for key in file.doubtful]
+    return f"doubtful in {file.machine}: {first_of(keys, _LISTED)}"
 
 
 def _section(section: PolarSection) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from polarcheck.foundation.errors import first_of
 from polarcheck.program.reading.excerpt import visible
 
 if TYPE_CHECKING:
@@ -54,6 +55,5 @@ def _text(value: Any) -> str:
     if isinstance(value, Mapping):
         value = [f"{key}={level}" for key, level in value.items()]
     if isinstance(value, list | tuple):
-        more = f" and {len(value) - _NAMED} more" if len(value) > _NAMED else ""
-        return f"{' '.join(value[:_NAMED])}{more}"
+        return first_of(value, _NAMED, " ")
     return str(value).lower() if isinstance(value, bool) else str(value)

@@ -9,9 +9,9 @@ from typing import Any
 
 import msgspec
 
-from polarcheck.foundation.errors import CertificateError, suggestion
+from polarcheck.foundation.errors import CertificateError, enumerated, suggestion
 from polarcheck.program.machines import toml_lines, toml_text
-from polarcheck.program.machines.value_types import MisfitError, display, fitted, listed
+from polarcheck.program.machines.value_types import MisfitError, display, fitted
 from polarcheck.program.reading import files
 from polarcheck.rewrite.certify import quoting
 from polarcheck.rewrite.certify.manifest import PLACE, Case, Conditions, Manifest
@@ -139,7 +139,7 @@ def _written(manifest: Manifest) -> tuple[dict[str, Case], dict[str, int]]:
 def _require_name(key: str, name: str, names: Collection[str], what: str) -> None:
     """Raise MisfitError for a name that is not among those of a kind."""
     if name not in names:
-        near = suggestion(name, names) or (f"; there are {listed(names)}" if names else "; there is none")
+        near = suggestion(name, names) or (f"; there are {enumerated(names, 'or')}" if names else "; there is none")
         raise MisfitError(key, f"{key}: no {what} {display(name)}{near}")
 
 
@@ -227,7 +227,7 @@ def _with_references(
                     if title in numbers
                     else f"controls.{case.control}.same_path_as"
                 )
-                raise MisfitError(key, f"{key}: {title} is compared with itself by {listed(sorted(passed))}")
+                raise MisfitError(key, f"{key}: {title} is compared with itself by {enumerated(sorted(passed), 'or')}")
             passed.add(case.same_path_as)
             case = referring[case.same_path_as]
     return referring, remarks

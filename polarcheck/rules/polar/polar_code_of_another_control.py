@@ -135,9 +135,10 @@ def _instead(hit: Hit, other_mode: OtherMode, machine: Machine, job: Job) -> str
 
     If the machine is only the default, it names those that know the code: `check it with --machine fanuc or gsk-988`.
     """
+    from polarcheck.foundation.errors import enumerated
     from polarcheck.program.machines.own_language import shown
     from polarcheck.rules.other_machine import NAMED
-    from polarcheck.rules.remedies import enumerated, is_chosen
+    from polarcheck.rules.remedies import is_chosen
 
     machines = other_mode.machines(hit.row)
     if not is_chosen(machine, job):

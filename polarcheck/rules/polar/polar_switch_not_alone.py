@@ -72,6 +72,7 @@ def details(hit: Hit) -> Details:
 
 def _taken_by(hit: Hit) -> str:
     """Where these addresses stand beside the same code that begins the mode; empty for nowhere."""
+    from polarcheck.foundation.errors import enumerated
     from polarcheck.program.machines import profiles
 
     code, letters = hit.switch, {chr(hit.trace.run.words.address[index]) for index in hit.words}
@@ -82,7 +83,6 @@ def _taken_by(hit: Hit) -> str:
     ]
     if not names or code not in hit.trace.machine.polar.on:
         return ""
-    *others, last = names
-    listed, words = f"{', '.join(others)} and {last}" if others else last, " ".join(sorted(letters))
+    words = " ".join(sorted(letters))
     kinematics = ", and LinuxCNC chooses the kinematics by it" if code == "G12.1" and words == "P" else ""
-    return f"; {listed} (--machine) {'take' if others else 'takes'} {words} there{kinematics}"
+    return f"; {enumerated(names)} (--machine) {'take' if len(names) > 1 else 'takes'} {words} there{kinematics}"

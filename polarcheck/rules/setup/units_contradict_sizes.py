@@ -121,6 +121,8 @@ def details(hit: Hit, implied_units: ImpliedUnits) -> Details:
 
 def _sizes(hit: Hit, implied_units: ImpliedUnits) -> str:
     """The sizes that say so, in words."""
+    from polarcheck.foundation.errors import enumerated
+
     too = "large" if implied_units.in_inch[hit.row] else "small"
     says = {
         f"the contours are too {too} for the cutter": implied_units.by_cutter,
@@ -130,5 +132,4 @@ def _sizes(hit: Hit, implied_units: ImpliedUnits) -> str:
         f"F is too {too}": implied_units.by_feed,
         f"X is very {too}": implied_units.by_x,
     }
-    *most, last = [words for words, witness in says.items() if witness[hit.row]]
-    return f"{', '.join(most)} and {last}" if most else last
+    return enumerated(words for words, witness in says.items() if witness[hit.row])

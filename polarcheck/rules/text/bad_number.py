@@ -81,9 +81,9 @@ def _of_other_control(hit: Hit, words: Words, machine: Machine, other_machine: O
     `; WAITM is a word of siemens-iso (--machine)`, where letters begin a word of other controls, or stand in it; which
     machines read the program well, where some do.
     """
+    from polarcheck.foundation.errors import enumerated
     from polarcheck.program.machines import profiles
     from polarcheck.rules.other_machine import NAMED, without_comments, words_of
-    from polarcheck.rules.remedies import enumerated
 
     if other_machine.text:
         return other_machine.text

@@ -57,6 +57,7 @@ def details(hit: Hit, words: Words) -> Details:
     import numpy as np
 
     from polarcheck.foundation.arrays import stretch
+    from polarcheck.foundation.errors import enumerated
     from polarcheck.rules.places import squeezed
     from polarcheck.rules.wording.written import short
 
@@ -65,9 +66,9 @@ def details(hit: Hit, words: Words) -> Details:
     # A line of 50 MB may be one block: only what is listed is taken out of it.
     listed = same if len(same) <= _LISTED + 1 else np.append(same[:_LISTED], same[-1])
     spans = zip(words.start[listed].tolist(), words.end[listed].tolist(), strict=True)
-    *others, last = (short(squeezed(hit.trace.text.source.excerpt(start, end))) for start, end in spans)
-    others = others if len(listed) == len(same) else [*others, "..."]
+    written = [short(squeezed(hit.trace.text.source.excerpt(start, end))) for start, end in spans]
+    written[-1:] = written[-1:] if len(listed) == len(same) else ["...", written[-1]]
     letter = chr(int(words.address[hit.index]))
     address = f",{letter.upper()}" if letter.islower() else letter
     often = "twice" if len(same) == 2 else f"{len(same)} times"
-    return {"repeated": f"{address} is written {often} in this block: {', '.join(others)} and {last}"}
+    return {"repeated": f"{address} is written {often} in this block: {enumerated(written)}"}

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
+from polarcheck.foundation.errors import enumerated
 from polarcheck.foundation.states import MM_PER_INCH
 from polarcheck.geometry.shapes.shape import SAME, Shape
 
@@ -149,18 +150,14 @@ def _each(value: Mapping[str, float], middle: str, sizes: Sizes) -> str:
     numbers = range(1, int(value["flats"]) + 1)
     angles = [_degrees(value[f"turned_{number}"]) for number in numbers]
     if "distance" in value:
-        return f"{_away(value['distance'], middle, sizes)} at {_and(angles)} deg"
+        return f"{_away(value['distance'], middle, sizes)} at {enumerated(angles)} deg"
     distances = [value[f"distance_{number}"] for number in numbers]
     beyond = ["" if distance >= 0 else f" beyond the {middle}" for distance in distances]
     flats = [
         f"{sizes(abs(distance))}{far} at {angle} deg"
         for distance, far, angle in zip(distances, beyond, angles, strict=True)
     ]
-    return f"{_and(flats)} from the {middle}"
-
-
-def _and(words: Sequence[str]) -> str:
-    return f"{', '.join(words[:-1])} and {words[-1]}"
+    return f"{enumerated(flats)} from the {middle}"
 
 
 def _flats(shape: Shape, line_of: _Line, sizes: Sizes) -> _Told:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
+from polarcheck.foundation.errors import consecutive, first_of
 from polarcheck.foundation.finding import SEVERITIES
 from polarcheck.view.picture_data import FindingPicture, Mark, SectionPicture
 
@@ -82,13 +83,8 @@ def _distance(first: Point, second: Point) -> float:
 
 def _as_ranges(numbers: Sequence[int]) -> str:
     """Write rising numbers with ranges: 1-3, 5."""
-    ranges: list[list[int]] = []
-    for number in numbers:
-        if ranges and number == ranges[-1][-1] + 1:
-            ranges[-1].append(number)
-        else:
-            ranges.append([number])
-    return ", ".join(f"{run[0]}-{run[-1]}" if len(run) > 2 else ", ".join(map(str, run)) for run in ranges)
+    runs = consecutive(numbers)
+    return ", ".join(f"{run[0]}-{run[-1]}" if len(run) > 2 else ", ".join(map(str, run)) for run in runs)
 
 
 def _gravest_first(finding: FindingPicture) -> tuple[int, int]:
@@ -103,9 +99,7 @@ def _of_finding(finding: FindingPicture) -> Entry:
 
 
 def _lines(lines: Sequence[int]) -> str:
-    text = ", ".join(map(str, lines[:8]))
-    noun = "line" if len(lines) == 1 else "lines"
-    return f"{noun} {text}" + (f" and {len(lines) - 8} more" if len(lines) > 8 else "")
+    return f"{'line' if len(lines) == 1 else 'lines'} {first_of([*map(str, lines)], 8)}"
 
 
 def _of_mark(mark: Mark) -> Entry:
