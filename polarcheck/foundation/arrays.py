@@ -139,10 +139,30 @@ def column_at(count: int, places: NDArray[Any] | Sequence[int], values: Any, rem
 # np.unique and, for some arguments, np.isin import numpy.ma, 10 % of the time of a small check.
 
 
+def first_in_run(*columns: NDArray[Any]) -> Mask:
+    """Return a mask of the first element of each run of elements that are equal in all of these columns."""
+    first, *others = columns
+    begins = np.ones(len(first), bool)
+    np.not_equal(first[1:], first[:-1], out=begins[1:])
+    for column in others:
+        begins[1:] |= column[1:] != column[:-1]
+    return begins
+
+
+def last_in_run(*columns: NDArray[Any]) -> Mask:
+    """Return a mask of the last element of each run of elements that are equal in all of these columns."""
+    return np.append(first_in_run(*columns)[1:], True)[: len(columns[0])]
+
+
+def runs(*columns: NDArray[Any]) -> tuple[Rows, Rows]:
+    """Return the index of the first and of the last element of each run of equal elements."""
+    return np.flatnonzero(first_in_run(*columns)), np.flatnonzero(last_in_run(*columns))
+
+
 def different(values: NDArray[_Number]) -> NDArray[_Number]:
     """Return the distinct values, rising; none of them may be NaN."""
     rising = np.sort(values, axis=None)
-    return rising[np.append(True, rising[1:] != rising[:-1])] if len(rising) else rising
+    return rising[first_in_run(rising)]
 
 
 def first_of_each(values: NDArray[Any]) -> tuple[Rows, Rows]:
@@ -153,8 +173,7 @@ def first_of_each(values: NDArray[Any]) -> tuple[Rows, Rows]:
     """
     order = values.argsort()
     ordered = values[order]
-    begins = np.ones(len(values), bool)
-    np.not_equal(ordered[1:], ordered[:-1], out=begins[1:])
+    begins = first_in_run(ordered)
     number = np.empty(len(values), np.int64)
     number[order] = np.cumsum(begins) - 1
     return np.minimum.reduceat(order, np.flatnonzero(begins)) if len(values) else order, number

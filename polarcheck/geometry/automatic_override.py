@@ -14,7 +14,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, States, Table
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, States, Table, first_in_run, last_in_run
 from polarcheck.foundation.states import Motion
 from polarcheck.geometry import polar, rates
 from polarcheck.geometry.plane import arcs_from_center, cross, dot, lines_from_center, quiet, rows_of_arcs
@@ -155,11 +155,11 @@ def pieces(start: Points, end: Points, center: Points, kind: States, feed: Float
     is_piece = np.diff(distance, axis=1) > _SHORTEST
     is_piece[:, 0] |= ~is_piece.any(axis=1)
     move, index = np.nonzero(is_piece)
-    last = np.append(move[1:] != move[:-1], True)[: len(move)]
+    last = last_in_run(move)
     # A part that is too short for a piece of its own joins the piece before it.
     finish = np.where(last, spokes.length[move], np.append(distance[move[1:], index[1:]], 0.0))
     spoke = spokes[move]
-    begin = np.where(np.append(True, move[1:] != move[:-1])[: len(move)], 0.0, distance[move, index])
+    begin = np.where(first_in_run(move), 0.0, distance[move, index])
     points = np.where(begin == 0, start[move], spoke.at(begin)[0])
     ends = np.where(last, end[move], spoke.at(finish)[0])
     middle = spoke.at((begin + finish) / 2)

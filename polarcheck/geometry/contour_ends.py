@@ -9,7 +9,7 @@ from __future__ import annotations
 import msgspec
 import numpy as np
 
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, Table, mask_at, ranges
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, Table, first_in_run, mask_at, ranges
 from polarcheck.geometry.segments import Curves, first_of_its_kind, segments
 from polarcheck.geometry.tolerances import TOUCH
 
@@ -205,7 +205,7 @@ def chords(curves: Curves, sagitta: float) -> tuple[Points, Points, Rows]:
 
 def middles(points: Points, of: Rows) -> Points:
     """The middle of the box round the points of a group, for each point; of: int[n], the group of each, rising."""
-    begins = np.diff(of, prepend=-1) != 0
+    begins = first_in_run(of)
     first = np.flatnonzero(begins)
     x, c = points.real, points.imag
     low, high = (side.reduceat(x, first) + 1j * side.reduceat(c, first) for side in (np.minimum, np.maximum))

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, runs
 from polarcheck.foundation.states import Motion
 from polarcheck.geometry.plane_path import PlanePath
 from polarcheck.geometry.segments import Curves
@@ -57,8 +57,7 @@ def outline_of(start: Points, end: Points, move: Rows, curves: Curves) -> Outlin
     chain = np.repeat(np.arange(len(first)), count)
     order = _from_block(move, first, count, closed)
     start, end, move = start[order], end[order], move[order]
-    begins = np.flatnonzero(np.append(True, (np.diff(move) != 0) | (np.diff(chain) != 0)))
-    last = np.append(begins[1:], len(move)) - 1
+    begins, last = runs(move, chain)
     of = move[begins]
     center = np.where(curves.kind[of] == Motion.LINE, np.nan, curves.center[of])
     turns = ((start[begins] - center).conj() * (end[begins] - center)).imag

@@ -7,7 +7,7 @@ from typing import Self
 import msgspec
 import numpy as np
 
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, States, Table
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, States, Table, runs
 from polarcheck.foundation.states import Motion
 from polarcheck.geometry import polar
 from polarcheck.geometry.plane import angle_between, arc_sweep, quiet
@@ -106,8 +106,7 @@ class PlanePath(Table, frozen=True):
     @quiet
     def go_round(self, path: Rows, count: int) -> Mask:
         """Return a boolean for each of `count` paths: it goes round the center. path: that of each move, ascending."""
-        first = np.flatnonzero(np.diff(path, prepend=-1))
-        last = np.append(first[1:], len(path)) - 1
+        first, last = runs(path)
         turns = np.radians(polar.c_sweep(*self.shape))
         turns[last] += angle_between(self.end[last], self.start[first])
         turn = np.bincount(path, weights=turns, minlength=count)

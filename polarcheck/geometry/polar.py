@@ -22,7 +22,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck.foundation.arrays import Floats, Points, States
+from polarcheck.foundation.arrays import Floats, Points, States, first_in_run
 from polarcheck.foundation.states import Motion
 from polarcheck.geometry.plane import (
     NOISE,
@@ -177,7 +177,7 @@ def c_angles(
     leaving, arriving = _directions(cleared(start), cleared(end), center, kind)
     is_known = ~np.isnan(sweep) & (section >= 0)
     row = np.arange(count)
-    begins = np.append(True, section[1:] != section[:-1])[:count]
+    begins = first_in_run(section)
     first = np.maximum.accumulate(np.where(begins, row, 0))
     turned = ((start.imag == 0) & (start.real < 0))[first] & (not axis.is_fixed)
     seen = is_known & (leaving != 0)

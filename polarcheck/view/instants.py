@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, ranges
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, first_in_run, ranges
 from polarcheck.foundation.states import Motion
 from polarcheck.geometry.plane import angle_between, cleared, cross, dot, quiet
 from polarcheck.view.rate_curves import Samples, Segments
@@ -72,7 +72,7 @@ def _turned_by(move: Rows, toward: Points, is_behind: Mask) -> Floats:
     turn = np.zeros(len(move))
     turn[1:] = np.degrees(angle_between(toward[:-1], toward[1:]))
     turn[is_behind] = 180.0
-    begins = np.append(True, np.diff(move) != 0)[: len(move)]
+    begins = first_in_run(move)
     turn = np.nan_to_num(turn)
     turn[begins] = 0.0
     total = np.cumsum(turn)
@@ -157,7 +157,7 @@ class _Sampler:
         share = np.where(number == 2 * count[of], self.ahead[of], share)
         order = np.lexsort((share, of))
         of, share = of[order], share[order]
-        differs = np.append(True, (np.diff(of) != 0) | (np.diff(share) != 0))[: len(of)]
+        differs = first_in_run(of, share)
         return of[differs], share[differs]
 
     def refined(self, of: Rows, share: Floats, most: int) -> tuple[Rows, Floats]:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, Table, column_at
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, Table, column_at, first_in_run, last_in_run
 from polarcheck.geometry import rates as of_moves
 from polarcheck.geometry.plane_path import SpacePath
 from polarcheck.view.drawn_moves import SectionMoves
@@ -172,15 +172,14 @@ def _extremes(curves: Samples, keep: Mask, most: int) -> Rows:
     part = (curves.t - curves.t[0]) / whole if whole > 0 else np.arange(count) / count
     number = np.minimum((part * bins).astype(np.int64), bins - 1)
     chosen = keep[curves.move]
-    begins = np.append(True, np.diff(number) != 0)
+    begins, ends = first_in_run(number), last_in_run(number)
     chosen[begins] = True
-    ends = np.append(begins[1:], True)
     for column in columns:
         order = np.lexsort((column, number))
         chosen[order[begins]] = True
         chosen[order[ends]] = True
     chosen[-1] = True
-    is_end = np.append(np.diff(curves.move) != 0, True)
+    is_end = last_in_run(curves.move)
     if np.count_nonzero(is_end) <= most:
         chosen |= is_end
     return np.flatnonzero(chosen)

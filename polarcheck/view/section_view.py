@@ -13,7 +13,7 @@ from polarcheck.checking.polar_sections import polar_sections
 from polarcheck.columns.path.moves import Moves, programmed_moves
 from polarcheck.columns.path.tool_center import ToolCenter
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Floats, Points, Rows, ranges
+from polarcheck.foundation.arrays import Floats, Points, Rows, last_in_run, ranges
 from polarcheck.foundation.errors import TooHardError
 from polarcheck.foundation.finding import FileReport
 from polarcheck.geometry.plane import quiet
@@ -190,15 +190,15 @@ def _curve(moves: Moves) -> tuple[Floats, Floats]:
     turn = np.abs(np.angle(point[1:] * np.conj(point[:-1])))
     between = np.diff(share) * time[move[:-1]]
     rate = np.degrees(np.append(turn / between, 0.0)) * 60
-    last = np.append(np.diff(move) != 0, True)
+    last = last_in_run(move)
     rate[last] = np.append(0.0, rate[:-1])[last]
     rate = np.where(moves.c_feed[move] == 0, 0.0, np.minimum(rate, moves.c_feed[move]))
     order = np.lexsort((rate, move))
-    rate[order[np.append(np.diff(move[order]) != 0, True)]] = moves.c_feed
+    rate[order[last_in_run(move[order])]] = moves.c_feed
     time_of_point = begin[move] + share * time[move]
     instant = np.floor(time_of_point / whole * _INSTANTS) if whole > 0 else np.zeros(len(time_of_point))
     order = np.lexsort((rate, instant))
-    chosen = np.sort(order[np.append(np.diff(instant[order]) != 0, True)])
+    chosen = np.sort(order[last_in_run(instant[order])])
     return time_of_point[chosen], rate[chosen]
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from polarcheck.columns.filling import before, fill_down, happened
 from polarcheck.columns.path.tool_center import ToolCenter
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Columns, Floats, Mask, cached_property, repeated
+from polarcheck.foundation.arrays import Columns, Floats, Mask, cached_property, first_in_run, repeated
 from polarcheck.foundation.states import FeedMode, Motion, Units
 from polarcheck.geometry.tolerances import SHARE
 
@@ -174,9 +174,7 @@ class Feeds(Columns, frozen=True):
         """Cutting moves at another F than the one before in the section."""
         trace, rows = self.trace, np.flatnonzero(self.trace.path.cuts)
         number, section = trace.feedrate.feed_number[rows], trace.mode.section[rows]
-        new = np.ones(len(rows), bool)
-        new[1:] = (number[1:] != number[:-1]) | (section[1:] != section[:-1])
-        return trace.blocks.mask_of(rows[new])
+        return trace.blocks.mask_of(rows[first_in_run(number, section)])
 
     def first_at_each(self, mask: Mask) -> Mask:
         """The first row of a mask at each F in each section."""

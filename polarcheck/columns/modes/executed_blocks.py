@@ -11,7 +11,17 @@ from numpy.typing import NDArray
 
 from polarcheck.columns.filling import fill_down
 from polarcheck.columns.lookups import Lookups
-from polarcheck.foundation.arrays import Floats, Mask, Rows, States, cached_property, column_at, mask_at, repeated
+from polarcheck.foundation.arrays import (
+    Floats,
+    Mask,
+    Rows,
+    States,
+    cached_property,
+    column_at,
+    first_in_run,
+    mask_at,
+    repeated,
+)
 from polarcheck.program.execution.programs import find_programs
 from polarcheck.program.execution.run import Run
 from polarcheck.program.machines.axis_table import FIRST_NAMED, NO_AXIS, NOT_NAMED
@@ -221,7 +231,7 @@ class ExecutedBlocks(Lookups, frozen=True):
         for letter, numbers in (("G", self.g_codes), ("M", self.m_codes)):
             order = np.argsort(numbers.astype(np.int16), kind="stable")  # of small numbers in linear time
             rising = numbers[order]
-            begins = np.flatnonzero(np.append(True, rising[1:] != rising[:-1])) if len(rising) else order
+            begins = np.flatnonzero(first_in_run(rising))
             groups[letter] = order, rising[begins], np.append(begins, len(order))
         return groups
 

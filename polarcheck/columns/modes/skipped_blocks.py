@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Columns, Mask, cached_property
+from polarcheck.foundation.arrays import Columns, Mask, cached_property, runs
 from polarcheck.foundation.states import Motion
 from polarcheck.geometry.tolerances import ROUNDING
 
@@ -43,9 +43,8 @@ class SkippedBlocks(Columns, frozen=True):
         filled = text.blocks.is_macro.copy()
         filled[text.words.block] = True
         blocks = np.flatnonzero(filled)
-        changes = np.diff(optional[blocks].astype(np.int8), prepend=-1) != 0
-        first = np.flatnonzero(changes)
-        count = np.diff(np.append(first, len(blocks)))
+        first, last = runs(optional[blocks])
+        count = last - first + 1
         alone = ~optional[blocks[first]] & (count == 1)
         found = {}
         for group in np.flatnonzero(alone[1:-1]).tolist():

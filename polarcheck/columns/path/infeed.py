@@ -26,7 +26,7 @@ from msgspec.structs import replace
 
 from polarcheck.columns.path.moves import Moves, compensation_path, of_tool, tool_center_path
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, cached_property, column_at, repeated
+from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, cached_property, column_at, first_in_run, repeated
 from polarcheck.foundation.states import Motion, Side
 from polarcheck.geometry.cutter_compensation.offset_path import ToolPath
 from polarcheck.geometry.plane_path import PlanePath
@@ -221,7 +221,7 @@ class Infeed(Columns, frozen=True):
         rounds = replace(of_tool(self.trace, tool, cycle.rows), known=is_known, allowance=allowance)
         fits = ~cycle.is_unfit[number]
         rounds, number = rounds[fits], number[fits]
-        first = np.flatnonzero(np.diff(number, prepend=-1))
+        first = np.flatnonzero(first_in_run(number))
         begin = rounds.start.copy()
         begin[first] = np.append(start, rounds.end[first[1:] - 1])[: len(first)]
         return replace(rounds, start=begin)

@@ -18,9 +18,12 @@ from polarcheck.foundation.arrays import (
     Rows,
     States,
     cached_property,
+    first_in_run,
     is_among,
+    last_in_run,
     mask_at,
     repeated,
+    runs,
 )
 from polarcheck.foundation.states import ArcFeed, Motion
 from polarcheck.geometry import polar, rates
@@ -153,11 +156,8 @@ def _shares_of_block(row: Rows, length: Floats) -> tuple[Mask, Floats, Floats]:
 
     The last move of a block without a way has all of it.
     """
-    begins = np.ones(len(row), bool)
-    begins[1:] = np.diff(row) != 0
-    first, ends = np.flatnonzero(begins), np.append(begins[1:], True)[: len(row)]
-    distance = np.cumsum(np.nan_to_num(length))
-    count = np.diff(np.append(first, len(row)))
+    begins, ends, (first, last) = first_in_run(row), last_in_run(row), runs(row)
+    distance, count = np.cumsum(np.nan_to_num(length)), last - first + 1
     done = distance - np.repeat((distance - np.nan_to_num(length))[first], count)
     whole = np.repeat(done[ends], count)
     after = np.where(ends, 1.0, np.divide(done, whole, out=np.zeros(len(row)), where=whole > 0))

@@ -6,7 +6,17 @@ import msgspec
 import numpy as np
 
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, cached_property, column_at, is_among, repeated
+from polarcheck.foundation.arrays import (
+    Columns,
+    Floats,
+    Mask,
+    Rows,
+    cached_property,
+    column_at,
+    first_in_run,
+    is_among,
+    repeated,
+)
 from polarcheck.foundation.states import Motion
 from polarcheck.program.machines.code_tables import code_set
 
@@ -65,8 +75,7 @@ def find_series(trace: Trace) -> Series:
     start, end, x, section = start[rows], end[rows], trace.path.x[rows] / written[rows], trace.mode.section[rows]
     is_arc = is_among(trace.axes.motion[rows], (Motion.CW, Motion.CCW))
     direction = np.where(is_arc, 0, np.sign(end - start))
-    begins = np.ones(len(rows), bool)
-    begins[1:] = (direction[1:] != direction[:-1]) | (section[1:] != section[:-1])
+    begins = first_in_run(direction, section)
     first = np.flatnonzero(begins)
     count = np.diff(first, append=len(rows))
     if not len(rows):

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck.foundation.arrays import Mask, Rows, cached_property, column_at, is_among, repeated
+from polarcheck.foundation.arrays import Mask, Rows, cached_property, column_at, first_in_run, is_among, repeated
 from polarcheck.foundation.patterns import lazy_pattern
 from polarcheck.program.execution.programs import block_text, find_programs
 from polarcheck.program.machines.code_lists import is_code
@@ -72,7 +72,7 @@ class Written:
         for kind in kinds:
             begins[1:] |= np.diff(kind[order].astype(np.int64)) != 0
         of_kind = np.cumsum(begins) - 1
-        in_new_block = begins | np.append(True, np.diff(blocks) != 0)
+        in_new_block = begins | first_in_run(blocks)
         is_habit = (np.bincount(of_kind) > often)[of_kind]
         count = np.where(is_habit, np.bincount(of_kind, in_new_block)[of_kind], 1)
         counts[index[order]] = np.where(begins | ~is_habit, count, 0)
@@ -174,7 +174,7 @@ class Written:
         if not len(index):
             return index
         block = self.words.block[index]
-        head = np.flatnonzero(np.append(True, block[1:] != block[:-1]))
+        head = np.flatnonzero(first_in_run(block))
         # The sum of bits equals their bitwise or if all are different.
         differs = np.add.reduceat(bits, head) != np.bitwise_or.reduceat(bits, head)
         differs &= ~self._broken_blocks[block[head]]
@@ -203,7 +203,7 @@ class Written:
         is_argument = np.isin(words.address[suspects], list(_ARGUMENT_SETS)) & np.isin(words.block[suspects], calls)
         suspects = suspects[~(is_argument | self._is_next_tool(suspects))]
         again = np.sort(self._again(suspects, words.address[suspects])[0])
-        first = again[np.append(True, words.block[again][1:] != words.block[again][:-1])[: len(again)]]
+        first = again[first_in_run(words.block[again])]
         return self._habits(first, words.address[first])
 
     def _is_next_tool(self, index: Rows) -> Mask:
@@ -371,8 +371,7 @@ class Written:
         Left out are blocks with an unreadable word, and a ) that remains of a nested comment.
         """
         strays = self.text.strays
-        first = np.ones(len(strays), bool)
-        first[1:] = strays.block[1:] != strays.block[:-1]
+        first = first_in_run(strays.block)
         unreadable = self.words.block[self.words.is_unreadable]
         is_left_over = self.text.source.code[strays.start] == ord(")")
         is_left_over &= np.isin(strays.block, self.text.comments.block[self.text.nested])
@@ -446,7 +445,7 @@ class Written:
         line = np.where(spans.start < leader, 0, text.blocks.line[spans.block])
         index = np.flatnonzero(is_counted)
         length = (spans.end - spans.start)[index]
-        first = np.flatnonzero(np.append(True, line[index][1:] != line[index][:-1])) if len(index) else index
+        first = np.flatnonzero(first_in_run(line[index]))
         return column_at(len(spans), index[first], np.add.reduceat(length, first) if len(first) else 0, 0)
 
     @cached_property

@@ -6,7 +6,7 @@ from bisect import bisect_left
 
 import numpy as np
 
-from polarcheck.foundation.arrays import Floats, Points, Rows
+from polarcheck.foundation.arrays import Floats, Points, Rows, first_in_run
 from polarcheck.foundation.time_limit import keep_time
 
 _MIX = np.uint64(0x9E3779B97F4A7C15)
@@ -21,7 +21,7 @@ def anchors(old: tuple[Points, Floats], new: tuple[Points, Floats], cell: float)
     """
     pairs = np.concatenate([_pairs(old, new, cell, shift) for shift in (0.0, 0.5)], axis=1)
     first, second = pairs[:, np.lexsort((-pairs[1], pairs[0]))]
-    is_other = np.append(True, (np.diff(first) != 0) | (np.diff(second) != 0))[: len(first)]
+    is_other = first_in_run(first, second)
     first, second = first[is_other], second[is_other]
     chosen = longest_rise(second)
     return first[chosen], second[chosen]
@@ -50,7 +50,7 @@ def _cells(point: Points, z: Floats, cell: float, shift: float) -> np.ndarray[tu
 def _visit(group: Rows) -> Rows:
     """The number of earlier values in the same group, for each value."""
     order = np.argsort(group, kind="stable")
-    begins = np.append(True, np.diff(group[order]) != 0)[: len(group)]
+    begins = first_in_run(group[order])
     first = np.maximum.accumulate(np.where(begins, np.arange(len(group)), 0))
     visits = np.empty(len(group), np.int64)
     visits[order] = np.arange(len(group)) - first

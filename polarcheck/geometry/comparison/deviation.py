@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, column_at
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, column_at, runs
 from polarcheck.geometry.comparison.measured_path import MeasuredPath, path_of_outline
 from polarcheck.geometry.comparison.rounds import Rounds, rounds_of
 from polarcheck.geometry.outline import Outline
@@ -210,8 +210,7 @@ def _between_walls(part: MachinedPart, drawn: MeasuredPath, metal: float) -> Mas
 
 def _is_open_end(drawn: MeasuredPath, points: Points) -> Mask:
     """True for points at an open end of a curve of the drawing."""
-    begins = np.flatnonzero(np.diff(drawn.of, prepend=-1))
-    last = np.append(begins[1:], len(drawn.of)) - 1
+    begins, last = runs(drawn.of)
     is_open = np.abs(drawn.start[begins] - drawn.end[last]) > 0
     ends = np.concatenate([drawn.start[begins][is_open], drawn.end[last][is_open]])
     return np.asarray(np.isin(np.round(points, 6), np.round(ends, 6)))

@@ -16,7 +16,7 @@ import heapq
 import msgspec
 import numpy as np
 
-from polarcheck.foundation.arrays import Floats, Rows
+from polarcheck.foundation.arrays import Floats, Rows, last_in_run
 from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.comparison.anchors import anchors
 from polarcheck.geometry.comparison.free_space import Budget, Corner, Meeting, OverBudgetError, frechet, is_within
@@ -149,7 +149,7 @@ def _pieces(old: Polyline, new: Polyline, old_at: Rows, new_at: Rows) -> _Pieces
     piece = np.minimum(moment.astype(np.int64), len(old_at) - 2)
     # A paired corner ends one piece and begins the next, and is as far apart in both.
     order = np.lexsort((distance, piece))
-    last = np.flatnonzero(np.append(np.diff(piece[order]) != 0, True))
+    last = np.flatnonzero(last_in_run(piece[order]))
     bound, share = np.zeros(len(old_at) - 1), np.zeros(len(old_at) - 1)
     bound[piece[order][last]] = distance[order][last]
     share[piece[order][last]] = (moment - piece)[order][last]

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, first_in_run, runs
 from polarcheck.geometry.comparison.measured_path import MeasuredPath
 
 #: A curve that leaves the round by no more than the tolerance and this [mm] is no wall.
@@ -84,11 +84,9 @@ def round_pieces(drawn: MeasuredPath, tolerance: float) -> Rows:
     limit = tolerance + _NO_WALL
     # A chord that is seen under a large angle is no part of an arc.
     on = (np.abs(drawn.start) >= reach - limit) & (np.abs(drawn.end) >= reach - limit) & (middle >= reach - limit)
-    begins = (np.diff(drawn.of, prepend=-1) != 0) | ~np.append(False, on[:-1])
+    begins = first_in_run(drawn.of) | ~np.append(False, on[:-1])
     piece = np.where(on, np.cumsum(on & begins) - 1, -1)
-    first = np.flatnonzero(np.diff(drawn.of, prepend=-1) != 0)
-    last = np.append(first[1:], len(on)) - 1
-    for begin, end in zip(first.tolist(), last.tolist(), strict=True):
+    for begin, end in zip(*(index.tolist() for index in runs(drawn.of)), strict=True):
         if on[begin] and on[end] and drawn.start[begin] == drawn.end[end]:
             piece[piece == piece[end]] = piece[begin]
     length = np.abs(drawn.end - drawn.start)

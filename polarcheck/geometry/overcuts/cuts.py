@@ -14,7 +14,7 @@ import msgspec
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, Table
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, Table, first_in_run
 from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.polygons import areas
 from polarcheck.geometry.polygons.faces import Geometries, coordinates, edges_of, ends_of, gathered, lines_of, polylines
@@ -60,7 +60,7 @@ class Cuts(Table, frozen=True):
     def worst(self) -> Self:
         """The deepest cut of each move; of equal ones the first."""
         order = np.lexsort((-self.depth, self.move))
-        return self[order[np.diff(self.move[order], prepend=-1) != 0]]
+        return self[order[first_in_run(self.move[order])]]
 
 
 def cuts_into(
@@ -125,7 +125,7 @@ def assign_facing_walls(part: FinishedParts, cuts: Cuts) -> Cuts:
     along = part.end[wall] - part.start[wall]
     facing = ((cuts.tool - cuts.place)[cut] * (-1j * along).conj()).real / np.maximum(np.abs(along), ZERO)
     order = np.lexsort((part.move[wall], -np.round(facing, 6), cut))
-    first = order[np.diff(cut[order], prepend=-1) != 0]
+    first = order[first_in_run(cut[order])]
     return _into(part, cuts, cut[first], wall[first])
 
 
@@ -216,8 +216,8 @@ def _clipped(
 
 def _run_is_near(whole: Geometries, pieces: Segments, group: Rows, limit: Floats) -> Mask:
     """True for pieces of a run that comes within the limit [mm] of its part; most runs of a sound program do not."""
-    run = np.cumsum((np.diff(group, prepend=-1) != 0) | (np.arange(len(group)) % _RUN == 0)) - 1
-    of_run = group[np.diff(run, prepend=-1) != 0]
+    run = np.cumsum(first_in_run(group) | (np.arange(len(group)) % _RUN == 0)) - 1
+    of_run = group[first_in_run(run)]
     lines = polylines(pieces.start, pieces.end, run)
     # GEOS finds nothing near a line of no length.
     return np.asarray(areas.dwithin(whole[of_run], lines, limit[of_run])[run] | (pieces.start == pieces.end))

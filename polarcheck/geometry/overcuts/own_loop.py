@@ -16,7 +16,7 @@ import msgspec
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, different
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, different, first_in_run
 from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.overcuts.cuts import Cuts, assign_facing_walls, cuts_into
 from polarcheck.geometry.polygons import areas
@@ -192,14 +192,14 @@ def _comes_close(walls: Segments, chords: Segments, repeated: Mask, is_ramp: Mas
         smallest = np.minimum.reduceat(limit[~is_ramp], first)
         near, loop_of_chord = np.zeros(len(path_loops), bool), number
         path, number = path[~repeated[~is_ramp]], number[~repeated[~is_ramp]]
-        run = np.cumsum((np.diff(number, prepend=-1) != 0) | (np.arange(len(number)) % _LONG_RUN == 0))
+        run = np.cumsum(first_in_run(number) | (np.arange(len(number)) % _LONG_RUN == 0))
         # A loop is decided by its first close line: a few chords of each decide most long loops that come close at all.
         index = np.arange(len(number))
         is_sample = (index % _LONG_RUN < _SAMPLE) & (np.bincount(number)[number] >= _LONG_RUN)
         for chosen in (np.flatnonzero(is_sample), index):
             chosen = chosen[~near[number[chosen]]]
             lines = polylines(path.start[chosen], path.end[chosen], run[chosen])
-            loop_of_line = number[chosen][np.diff(run[chosen], prepend=0) != 0]
+            loop_of_line = number[chosen][first_in_run(run[chosen])]
             share = np.cumsum(shapely.get_num_coordinates(lines)) // _PIECES
             for part in np.split(np.arange(len(loop_of_line)), np.flatnonzero(np.diff(share)) + 1):
                 keep_time()

@@ -9,7 +9,7 @@ from __future__ import annotations
 import msgspec
 import numpy as np
 
-from polarcheck.foundation.arrays import Floats, Mask, Rows, Table
+from polarcheck.foundation.arrays import Floats, Mask, Rows, Table, first_in_run
 from polarcheck.geometry.segments import Curves, boxes
 from polarcheck.geometry.tolerances import ROUNDING
 
@@ -48,7 +48,7 @@ class FlatLoops(msgspec.Struct, frozen=True):
 
 def flat_loops(curves: Curves, section: Rows, z: Floats) -> FlatLoops:
     """The loops of these curves that stay at one Z; section: int[curves], z: float64[curves], NaN unknown."""
-    first = np.flatnonzero(np.diff(curves.loop, prepend=-1))
+    first = np.flatnonzero(first_in_run(curves.loop))
     low, high = np.minimum.reduceat(z, first), np.maximum.reduceat(z, first)
     flat = high - low <= ROUNDING
     return FlatLoops(curves.loop[first][flat], section[first][flat], low[flat], boxes(curves, first)[:, flat])

@@ -16,7 +16,7 @@ import numpy as np
 import shapely  # type: ignore[import-untyped]
 from numpy.typing import NDArray
 
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, Table, first_of_each, ranges
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, Table, first_in_run, first_of_each, ranges
 from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.polygons import areas
 from polarcheck.geometry.polygons.noding import Edges, merged, noded
@@ -143,10 +143,8 @@ def _distinct(edges: Edges, walls: Walls) -> tuple[Edges, _Sides]:
 def _lines(edges: Edges, sides: _Sides, walls: Walls) -> _Lines:
     start, end = edges.start, edges.end
     degree = np.bincount(start, minlength=len(edges.nodes)) + np.bincount(end, minlength=len(edges.nodes))
-    begins = np.ones(len(start), bool)
-    begins[1:] = (end[:-1] != start[1:]) | (degree[start[1:]] != 2)
-    for side in (sides.left, sides.right, sides.joins):
-        begins[1:] |= side[1:] != side[:-1]
+    begins = first_in_run(sides.left, sides.right, sides.joins)
+    begins[1:] |= (end[:-1] != start[1:]) | (degree[start[1:]] != 2)
     first = np.flatnonzero(begins)
     count = np.diff(np.append(first, len(start)))
     last = first + count - 1

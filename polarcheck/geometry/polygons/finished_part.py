@@ -19,7 +19,7 @@ import msgspec
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, different
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, different, first_in_run
 from polarcheck.geometry.contour_ends import gaps_between_ends
 from polarcheck.geometry.polygons import areas
 from polarcheck.geometry.polygons.faces import GRID, Geometries, Standing, Walls, standing
@@ -188,7 +188,7 @@ def _plane(contours: Contours) -> _Plane:
     half = 2 * reach + 4 * float(contours.radius.max(initial=0.0))
     pitch = 3 * half
     along, total = _lengths(parts, which)
-    first = np.flatnonzero(np.diff(which, prepend=-1))
+    first = np.flatnonzero(first_in_run(which))
     number = np.searchsorted(which[first], which[parts.move])
     length = np.bincount(number, np.abs(parts.end - parts.start), len(first)).astype(np.float64)
     loops = _ends(chosen, first, length, contours, pitch)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, Table, ranges
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, Table, first_in_run, ranges
 from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.contour_ends import CLOSED
 from polarcheck.geometry.polygons.faces import Walls
@@ -138,7 +138,7 @@ def closed_beside(loops: LoopEnds, walls: Walls, loop: Rows, along: Floats) -> t
         is_beside &= (distance <= loops.limit[loop[wall]]) & (distance > CLOSED)
         wall, foot, distance = wall[is_beside], foot[is_beside], distance[is_beside]
         order = np.lexsort((distance, loop[wall]))
-        nearest = order[np.diff(loop[wall][order], prepend=-1) != 0]
+        nearest = order[first_in_run(loop[wall][order])]
         of = loop[wall[nearest]]
         lines.append(lines_between(point[of], foot[nearest], loops.group[of]))
         sizes.append(distance[nearest])

@@ -15,7 +15,7 @@ import numpy as np
 import shapely  # type: ignore[import-untyped]
 from numpy.typing import NDArray
 
-from polarcheck.foundation.arrays import Mask, Points, Rows
+from polarcheck.foundation.arrays import Mask, Points, Rows, first_in_run, last_in_run, runs
 from polarcheck.foundation.errors import NoAnswerError
 from polarcheck.geometry.polygons import areas
 from polarcheck.geometry.polygons.faces import GRID, Geometries, coordinates, lines_of
@@ -77,8 +77,8 @@ def _halves_of_arcs(path: Curves, chords: Segments) -> Rows:
     The half of an arc that each chord is of, rising; -1 for lines and spirals, and for the first and the last chord of
     an arc, which may be shorter than the others. The ends of no half meet, as those of a circle do.
     """
-    first = np.flatnonzero(np.diff(chords.move, prepend=-1))
-    count = np.diff(np.append(first, len(chords)))
+    first, last = runs(chords.move)
+    count = last - first + 1
     index = _places(chords.move)
     of = np.repeat(count, count)
     ends = np.abs(path.start - path.center), np.abs(path.end - path.center)
@@ -113,8 +113,7 @@ def _beside_arcs(chords: Segments, part: Rows, center: Points, is_pie: Mask, rad
     along = (chords.end - chords.start) / np.abs(chords.end - chords.start)
     # Away from the center: on the right of arcs that run counterclockwise.
     outward = radius * along * np.where(((chords.start - center).conj() * along).imag > 0, -1j, 1j)
-    first = np.append(True, np.diff(part) != 0)
-    last = np.append(first[1:], True)
+    first, last = first_in_run(part), last_in_run(part)
     before, after = (np.where(end, outward, np.roll(outward, by)) for end, by in ((first, 1), (last, -1)))
     inner_start = np.where(is_pie, center, chords.start - _mitre(before, outward))
     inner_end = np.where(is_pie, center, chords.end - _mitre(outward, after))[last]

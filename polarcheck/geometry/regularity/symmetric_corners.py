@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from polarcheck.foundation.arrays import Mask, Points
+from polarcheck.foundation.arrays import Mask, Points, first_in_run
 
 #: Parts of a turn that are tried: every symmetric turn has one of these in it.
 _PARTS = (2, 3, 5, 7, 11, 13)
@@ -91,7 +91,7 @@ def _common(guess: Points, count: int) -> Points:
     """The guess that most agree on, if they are more than chance; else none."""
     cell = np.round(guess / _NEAR)
     order = np.lexsort((cell.imag, cell.real))
-    begins = np.append(True, np.diff(cell[order]) != 0)
+    begins = first_in_run(cell[order])
     first = np.flatnonzero(begins)
     size = np.diff(first, append=len(order))
     best = int(np.argmax(size))

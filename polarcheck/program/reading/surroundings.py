@@ -14,7 +14,7 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from polarcheck.foundation.arrays import Mask, Table, is_among, mask_at
+from polarcheck.foundation.arrays import Mask, Table, first_in_run, is_among, mask_at
 from polarcheck.foundation.patterns import lazy_pattern
 from polarcheck.program.reading.source import CR, LF, Bytes, Positions
 
@@ -211,8 +211,7 @@ def _within(inner: Ranges, outer: Ranges) -> Mask:
 def _first_of_line(positions: Positions, lines: Positions) -> Ranges:
     """From the first position on each line to the end of the line."""
     line = np.searchsorted(lines, positions)
-    first = np.ones(len(positions), bool)
-    first[1:] = line[1:] != line[:-1]
+    first = first_in_run(line)
     return Ranges(positions[first], lines[line[first]])
 
 

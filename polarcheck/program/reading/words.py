@@ -9,7 +9,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck.foundation.arrays import Floats, Mask, Table, is_among, mask_at
+from polarcheck.foundation.arrays import Floats, Mask, Table, first_in_run, is_among, mask_at
 from polarcheck.foundation.patterns import lazy_pattern
 from polarcheck.program.reading.characters import KINDS, Character
 from polarcheck.program.reading.language_blocks import extract_statements
@@ -432,7 +432,7 @@ def _begins_statement(words: Words) -> Mask:
     bare = np.flatnonzero(has_no_digits & _BEGINS_STATEMENT[words.address])
     if not len(bare):
         return begins
-    is_head = np.append(True, words.block[1:] != words.block[:-1])
+    is_head = first_in_run(words.block)
     is_head[1:] |= is_among(words.address[:-1], list(b"N/"))
     bare = bare[is_head[bare]]
     for letters, has_number in _STATEMENTS.items():
