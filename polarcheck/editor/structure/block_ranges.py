@@ -13,10 +13,9 @@ import numpy as np
 from polarcheck.editor.structure.document import is_written
 from polarcheck.editor.structure.lexing import tokens
 from polarcheck.program.execution.listing import Listing
-from polarcheck.program.execution.loops import find_loops
 from polarcheck.program.execution.programs import Program
 from polarcheck.program.execution.run import is_code
-from polarcheck.program.execution.structures import find_structures
+from polarcheck.program.execution.structures import find_loops, find_structures
 
 #: The words of loops and structures, WHILE also as WH and END as EN; only blocks with one of them are read.
 _KEYWORD = re.compile(rb"WH|DO|EN|LOOP|FOR|IF|ELSE|REPEAT|UNTIL", re.IGNORECASE)

@@ -71,13 +71,7 @@ def is_unknown(state: State, condition: Expression | None) -> bool:
 
 def is_true(state: State, condition: Expression | None, block: int) -> bool:
     """True for a condition that holds; an unknown one counts as false, and is remarked."""
-    if condition is None:
-        return False
-    result, fault = decide(condition, state.variables, state.listing.arithmetic)
-    state.add(fault, block)
-    if result is None:
-        state.add_remark("condition-unknown", block)
-    return bool(result)
+    return condition is not None and bool(state.decide(condition, block))
 
 
 def for_continues(state: State, statement: Statement, block: int) -> bool:
@@ -118,8 +112,7 @@ def repeat_part(state: State, statement: Statement, block: int) -> int:
         return block + 1
     times = 1
     if statement.value is not None:
-        value, fault = evaluate(statement.value, state.variables, state.listing.arithmetic)
-        state.add(fault, block)
+        value = state.evaluate(statement.value, block)
         if value != value:
             state.add_remark("condition-unknown", block)
         else:

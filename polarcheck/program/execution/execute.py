@@ -12,7 +12,7 @@ from polarcheck.program.execution.arithmetic import UNKNOWN, FromVacant, Unknown
 from polarcheck.program.execution.branches import execute_structure, is_true, is_unknown, leave_parts, repeat_part
 from polarcheck.program.execution.called_programs import Shelf
 from polarcheck.program.execution.calls import enter_program, execute_call, leave_program, modal_call
-from polarcheck.program.execution.expression import decide, evaluate
+from polarcheck.program.execution.expression import evaluate
 from polarcheck.program.execution.listing import Listing
 from polarcheck.program.execution.macro import Variables, assign, step_of, word_value
 from polarcheck.program.execution.programs import Program, Search
@@ -264,7 +264,8 @@ def _loop(state: State, statement: Statement, block: int) -> int:
         head = loops.head.get(block)
         if head is None:
             return block + 1
-        if state.listing.statement(head).kind is Kind.DO or not _runs_once(state, head):
+        begin = state.listing.statement(head)
+        if begin.kind is Kind.DO or not is_unknown(state, begin.condition):
             state.go_back(block)
             return head
         return block + 1
@@ -273,18 +274,8 @@ def _loop(state: State, statement: Statement, block: int) -> int:
         return block + 1
     if statement.condition is None:
         return end + 1
-    result, fault = decide(statement.condition, state.variables, state.listing.arithmetic)
-    state.add(fault, block)
-    if result is None:
-        state.add_remark("condition-unknown", block)
-        return block + 1  # run once; the END goes on
-    return block + 1 if result else end + 1
-
-
-def _runs_once(state: State, head: int) -> bool:
-    """True for a loop that runs once because its condition is unknown."""
-    condition = state.listing.statement(head).condition
-    return condition is None or decide(condition, state.variables, state.listing.arithmetic)[0] is None
+    # Where its condition is unknown it runs once; the END goes on.
+    return end + 1 if state.decide(statement.condition, block) is False else block + 1
 
 
 def _execute_words(state: State, statement: Statement, block: int) -> int:

@@ -42,13 +42,8 @@ def add_static_faults(state: State) -> None:
             state.add(statement.fault, block)
             _mixed_logic(state, block, statement)
             _target_twice(state, program, block, statement)
-        for loop in listing.loops(program).faults:
-            at_fault = listing.statement(loop.block)
-            state.add_fault(loop.kind, loop.block, at_fault, number=loop.number, other=loop.other, levels=loop.levels)
-        for structure in listing.structures(program.first).faults:
-            at_fault = listing.statement(structure.block)
-            names = {"keyword": structure.keyword, "missing": structure.missing}
-            state.add_fault(structure.kind, structure.block, at_fault, **names)
+        for fault in (*listing.loops(program).faults, *listing.structures(program.first).faults):
+            state.add_fault(fault.kind, fault.block, listing.statement(fault.block), **fault.values)
         _idle_loops(state, program)
     if not state.remarks and not state.stopped:
         _never_run(state)

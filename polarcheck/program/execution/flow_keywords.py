@@ -51,8 +51,7 @@ def _jump(block: SpokenBlock, kind: Kind, first: Token, condition: Expression | 
         return
     if token.text in ("N", ":") and block.tokens[min(block.at + 1, len(block.tokens) - 1)].text.isdigit():
         block.at += 1
-        number = block.token
-        block.at += 1
+        number = block.take_token()
         block.add(replace(statement, end=number.end, jump=constant(float(number.text), token.start, number.end)))
         return
     block.leave_rest(first)
@@ -165,8 +164,7 @@ def _define(block: SpokenBlock, first: Token) -> None:
     """DEF REAL A, B=5: each variable takes its first value."""
     kind = _type(block)
     while kind and block.token.kind in _NAMES:
-        token = block.token
-        block.at += 1
+        token = block.take_token()
         if block.is_sign("["):
             block.arguments()
             block.leave_unread(f"{token.text}[]", token, matters=False)
@@ -193,8 +191,7 @@ def _procedure(block: SpokenBlock, first: Token) -> None:
                 block.leave_unread("VAR", block.token)
             if not _type(block) or block.token.kind not in _NAMES:
                 break
-            token = block.token
-            block.at += 1
+            token = block.take_token()
             block.arguments()
             default = block.expression() if block.take_sign("=") else None
             parameters.append(Parameter(block.names.declare(token.text), default))
@@ -218,8 +215,7 @@ def call_by_name(block: SpokenBlock, name: str, first: Token) -> None:
     span = first.start, block.last_end
     words = [Word("<", Expression((), *span), name, *span)]
     if block.token.text == "P":
-        token = block.token
-        block.at += 1
+        token = block.take_token()
         block.take_sign("=")
         times = block.expression()
         if times is not None:

@@ -50,8 +50,7 @@ class _Reader(SpokenBlock):
         self.head()
         self.first = self.token
         while self.token.kind != "end":
-            token = self.token
-            self.at += 1
+            token = self.take_token()
             if token.kind == "letter":
                 self.letter(token)
             elif token.kind == "name":

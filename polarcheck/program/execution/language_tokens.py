@@ -87,6 +87,12 @@ class Tokens:
         """The next token; the last one where all have been passed over."""
         return self.tokens[min(self.at, len(self.tokens) - 1)]
 
+    def take_token(self) -> Token:
+        """Pass over the next token; return it."""
+        token = self.token
+        self.at += 1
+        return token
+
     def is_sign(self, sign: str, ahead: int = 0) -> bool:
         """True where the next token, or the one at this distance behind it, is this sign."""
         token = self.token_ahead(ahead)
@@ -106,8 +112,7 @@ class Tokens:
         """Pass over brackets and their contents; the next token opens them. Returns the last token passed over."""
         depth, last = 0, self.token
         while self.token.kind != "end":
-            last = self.token
-            self.at += 1
+            last = self.take_token()
             if last.kind == "sign":
                 depth += (last.text in "([") - (last.text in ")]")
                 if depth <= 0:

@@ -10,11 +10,10 @@ import numpy as np
 
 from polarcheck.program.execution.arithmetic import Arithmetic
 from polarcheck.program.execution.custom_macro import read_statement
-from polarcheck.program.execution.loops import Loops, find_loops
 from polarcheck.program.execution.macro import Variables, called_program
 from polarcheck.program.execution.programs import Program, ProgramName, block_text, find_programs, first_blocks, turns
 from polarcheck.program.execution.statement import Kind, Statement
-from polarcheck.program.execution.structures import Structures, find_structures
+from polarcheck.program.execution.structures import Structures, find_loops, find_structures
 from polarcheck.program.execution.variable_names import Names
 from polarcheck.program.machines.machine import Machine
 from polarcheck.program.reading.joining import joined
@@ -49,7 +48,7 @@ class Listing:
         self.stops: list[int] = np.flatnonzero(turns(self.text, self._flow_codes | self.ends)).tolist()
         self.names = Names()
         self._statements: dict[int, Statement] = {}
-        self._loops: dict[int, Loops] = {}
+        self._loops: dict[int, Structures] = {}
         self._structures: dict[int, Structures] = {}
         self._calls: dict[int, dict[ProgramName, bool]] = {}
         self._nothing_known = Variables(self.macro)
@@ -107,7 +106,7 @@ class Listing:
         is_macro = self.text.blocks.is_macro
         return [(block, self.statement(block)) for block in self.stops[low:high] if is_macro[block]]
 
-    def loops(self, program: Program) -> Loops:
+    def loops(self, program: Program) -> Structures:
         """The loops of a program."""
         if program.first not in self._loops:
             self._loops[program.first] = find_loops(self.macro_statements(program), self.macro.loop_levels)

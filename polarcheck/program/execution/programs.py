@@ -9,8 +9,8 @@ import bisect
 import enum
 import itertools
 import re
-from collections.abc import Iterable, Sequence
-from typing import NamedTuple
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from typing import NamedTuple, TypeVar
 
 import msgspec
 import numpy as np
@@ -32,6 +32,9 @@ _SEQUENCE_NUMBER = r"[\s/]*(?:/\s*\d\s*)?(?:[O:]\s*\d+\s*)?N\s*(\d+)"
 _LABEL = (
     r"[\s/]*(?:/\s*\d\s*)?(?:N\s*\d+\s*)?(?:([A-Z_][A-Z0-9_]+)\s*:(?!=)|(N(?!OEX\b)[A-Z][A-Z0-9]{0,3})(?![A-Z0-9=]))"
 )
+
+
+Key = TypeVar("Key", int, str)
 
 
 class Search(enum.Enum):
@@ -117,7 +120,7 @@ class Programs:
 
     def labels(self, program: Program) -> dict[str, list[int]]:
         """The blocks of each label of a program, in capitals."""
-        return self._labels.get(self._first_of(program.first), {})
+        return self._labels.get(self.around(program.first).first, {})
 
     @cached_property
     def with_labels(self) -> frozenset[int]:
@@ -132,19 +135,21 @@ class Programs:
         names = self.text.labels
         columns = (names.block.tolist(), names.start.tolist(), names.end.tolist())
         places = [(block, self.text.source.excerpt(*span).upper()) for block, *span in zip(*columns, strict=True)]
-        pattern = re.compile(_LABEL, re.IGNORECASE)
-        for block in np.flatnonzero(self.text.blocks.is_macro).tolist():
-            match = pattern.match(block_text(self.text, block))
-            if match:
-                places.append((block, (match[1] or match[2]).upper()))
-        labels: dict[int, dict[str, list[int]]] = {}
-        for block, label in sorted(places):
-            labels.setdefault(self._first_of(block), {}).setdefault(label, []).append(block)
-        return labels
+        places += [(block, (match[1] or match[2]).upper()) for block, match in self._in_macro(label_in)]
+        return self._by_program(places)
 
-    def _first_of(self, block: int) -> int:
-        """The first block of the program in which a block stands."""
-        return self._firsts[max(bisect.bisect_right(self._firsts, block) - 1, 0)]
+    def _in_macro(self, read: Callable[[str], re.Match[str] | None]) -> Iterator[tuple[int, re.Match[str]]]:
+        """The blocks with statements at whose head something is found."""
+        for block in np.flatnonzero(self.text.blocks.is_macro).tolist():
+            if match := read(block_text(self.text, block)):
+                yield block, match
+
+    def _by_program(self, places: Iterable[tuple[int, Key]]) -> dict[int, dict[Key, list[int]]]:
+        """The blocks of each label or number, by the first block of its program."""
+        blocks: dict[int, dict[Key, list[int]]] = {}
+        for block, key in sorted(places):
+            blocks.setdefault(self.around(block).first, {}).setdefault(key, []).append(block)
+        return blocks
 
     def around(self, block: int) -> Program:
         """The program in which a block stands."""
@@ -152,7 +157,7 @@ class Programs:
 
     def targets(self, program: Program) -> dict[int, list[int]]:
         """The blocks of each N number of a program, in order."""
-        return self._targets.get(self._first_of(program.first), {})
+        return self._targets.get(self.around(program.first).first, {})
 
     @cached_property
     def _targets(self) -> dict[int, dict[int, list[int]]]:
@@ -164,15 +169,8 @@ class Programs:
             for block, value in zip(text.words.block[numbered], text.words.value[numbered], strict=True)
             if value < _NUMBER_LIMIT
         ]
-        pattern = re.compile(_SEQUENCE_NUMBER, re.IGNORECASE)
-        for block in np.flatnonzero(text.blocks.is_macro).tolist():
-            match = pattern.match(block_text(text, block))
-            if match and len(match[1]) < 10:
-                places.append((block, int(match[1])))
-        targets: dict[int, dict[int, list[int]]] = {}
-        for block, number in sorted(places):
-            targets.setdefault(self._first_of(block), {}).setdefault(number, []).append(block)
-        return targets
+        places += [(block, int(match[1])) for block, match in self._in_macro(sequence_number_in) if len(match[1]) < 10]
+        return self._by_program(places)
 
 
 def sequence_number_in(written: str) -> re.Match[str] | None:

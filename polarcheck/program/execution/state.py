@@ -9,8 +9,9 @@ import msgspec
 import numpy as np
 
 from polarcheck.foundation.time_limit import Limit, current_limit, keep_going, seconds_for
+from polarcheck.program.execution.arithmetic import Value
 from polarcheck.program.execution.executed_rows import ExecutedRows
-from polarcheck.program.execution.expression import Fault
+from polarcheck.program.execution.expression import Expression, Fault, decide, evaluate
 from polarcheck.program.execution.kinds import FaultKind, RemarkKind
 from polarcheck.program.execution.listing import Listing
 from polarcheck.program.execution.macro import Variables
@@ -206,6 +207,20 @@ class State:
         if fault is not None:
             values = {} if fault.number is None else {"number": fault.number}
             self.add_fault(fault.kind, block, fault, **values)
+
+    def evaluate(self, expression: Expression, block: int) -> Value:
+        """The value of an expression in a block, whose fault is recorded."""
+        value, fault = evaluate(expression, self.variables, self.listing.arithmetic)
+        self.add(fault, block)
+        return value
+
+    def decide(self, condition: Expression, block: int) -> bool | None:
+        """Whether a condition in a block holds; None, which is remarked, where that is not known."""
+        result, fault = decide(condition, self.variables, self.listing.arithmetic)
+        self.add(fault, block)
+        if result is None:
+            self.add_remark("condition-unknown", block)
+        return result
 
     def add_remark(self, kind: RemarkKind, block: int, **values: str | int | float) -> None:
         """Record, once for each block, why it was not executed as the control would."""

@@ -1,4 +1,4 @@
-"""The structures IF .. ELSE .. ENDIF, WHILE, FOR, LOOP, REPEAT .. UNTIL: their heads and ends, by nesting."""
+"""The loops of custom macro, DO and END, and the structures IF .. ELSE .. ENDIF, WHILE, FOR, LOOP, REPEAT .. UNTIL."""
 
 from __future__ import annotations
 
@@ -18,21 +18,21 @@ _ENDS: Final = {head: end for end, head in CLOSES.items()}
 
 class StructureFault(msgspec.Struct, frozen=True):
     """
-    A structure that does not close, or an end without its head.
+    A loop or structure that does not close or crosses another, or an end without its head.
 
-    keyword: the keyword at the block.
-    missing: the keyword that should match it.
+    values: for the message. Of a loop: number, of its DO or END; other, that of the loop that it lies in or crosses, 0
+    for none; levels, how deep the control can nest loops. Of a structure: keyword, at the block, and missing, the one
+    that should match it.
     """
 
     kind: FaultKind
     block: int
-    keyword: str
-    missing: str
+    values: dict[str, str | int]
 
 
 class Structures(msgspec.Struct):
     """
-    The structures of one program, by their blocks.
+    The loops, or the structures, of one program, by their blocks.
 
     end: head or ELSE -> last statement of the structure.
     head: last statement -> head.
@@ -43,6 +43,47 @@ class Structures(msgspec.Struct):
     head: dict[int, int] = {}
     other: dict[int, int] = {}
     faults: list[StructureFault] = []
+
+    def wrong(self, kind: FaultKind, block: int, **values: str | int) -> None:
+        """Record a fault."""
+        self.faults.append(StructureFault(kind, block, values))
+
+
+def find_loops(statements: Sequence[tuple[int, Statement]], levels: int) -> Structures:
+    """
+    Pair the DO and END statements of a program, given with their blocks in order; levels: as in StructureFault.
+
+    Source: B-62754EN/01, chapter 16 (the same number may be used again, loops may not cross, three deep); alarm 124.
+    """
+    loops = Structures()
+    open_loops: list[tuple[int, int]] = []
+
+    def wrong(kind: FaultKind, block: int, number: int, rival: int = 0) -> None:
+        loops.wrong(kind, block, number=number, other=rival, levels=levels)
+
+    for block, statement in statements:
+        if statement.loop is None:
+            continue
+        number = statement.loop.value
+        if statement.kind in (Kind.WHILE_DO, Kind.DO):
+            if any(number == open_number for open_number, _ in open_loops):
+                wrong("loop-inside-itself", block, number, number)
+            elif len(open_loops) >= levels:
+                wrong("loop-levels", block, number)
+            open_loops.append((number, block))
+        elif statement.kind is Kind.END:
+            if not any(number == open_number for open_number, _ in open_loops):
+                wrong("end-without-loop", block, number)
+                continue
+            while open_loops[-1][0] != number:
+                open_number, head = open_loops.pop()
+                wrong("loops-crossed", head, open_number, number)
+            _, head = open_loops.pop()
+            loops.end[head] = block
+            loops.head[block] = head
+    for number, head in open_loops:
+        wrong("loop-without-end", head, number)
+    return loops
 
 
 def find_structures(statements: Sequence[tuple[int, Statement]]) -> Structures:
@@ -61,12 +102,12 @@ def find_structures(statements: Sequence[tuple[int, Statement]]) -> Structures:
                 continue
             opening = "IF" if keyword == "ELSE" else CLOSES[keyword]
             if not open_of[opening]:
-                structures.faults.append(StructureFault("end-without-structure", block, keyword, opening))
+                structures.wrong("end-without-structure", block, keyword=keyword, missing=opening)
                 continue
             while open_heads[-1][0] != opening:
                 head, opened = open_heads.pop()
                 open_of[head] -= 1
-                structures.faults.append(StructureFault("structure-without-end", opened, head, _ENDS[head]))
+                structures.wrong("structure-without-end", opened, keyword=head, missing=_ENDS[head])
             _, opened = open_heads[-1]
             if keyword == "ELSE":
                 structures.other[opened] = block
@@ -77,5 +118,5 @@ def find_structures(statements: Sequence[tuple[int, Statement]]) -> Structures:
             if opened in structures.other:
                 structures.end[structures.other[opened]] = block
     for head, opened in open_heads:
-        structures.faults.append(StructureFault("structure-without-end", opened, head, _ENDS[head]))
+        structures.wrong("structure-without-end", opened, keyword=head, missing=_ENDS[head])
     return structures

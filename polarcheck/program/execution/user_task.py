@@ -91,8 +91,7 @@ class _Block(SpokenBlock):
 
     def part(self) -> None:
         """One assignment, one word, or one statement of the flow."""
-        first = self.token
-        self.at += 1
+        first = self.take_token()
         if first.kind == "letter":
             self.letter(first)
         elif first.kind != "name":
@@ -224,8 +223,7 @@ class _Block(SpokenBlock):
     def jump(self, kind: Kind, first: Token, condition: Expression | None) -> None:
         """The sequence number or name to go to, which comes next."""
         self.at += self.token.text == "N"
-        target = self.token
-        self.at += 1
+        target = self.take_token()
         statement = Statement(kind, first.start, target.end, condition=condition)
         if target.kind == "number":
             jump = constant(float(target.text), target.start, target.end)

@@ -54,7 +54,7 @@ def read_offset_table(path: Path, title: str, *, pipes: bool = False, units: Uni
         raise JobError(f"{title}: {error.strerror}") from None
     except ValueError as error:
         raise JobError(f"{title}: {error}") from None
-    plain = _COMMENT.sub(_blank, text)
+    plain = _COMMENT.sub(" ", text)
     entries: list[Entry] = []
     problem: NotUnderstoodError | None = None
     try:
@@ -76,10 +76,6 @@ def _entries(text: str, plain: str, units: Units | None) -> Iterator[Entry]:
     if tool_data.IS_TOOL_DATA.search(text):
         return tool_data.entries(text)
     return _punched(plain, units) if _IS_PUNCHED.search(plain) else offset_page.entries(text)
-
-
-def _blank(match: re.Match[str]) -> str:
-    return " "
 
 
 def _punched(text: str, units: Units | None) -> Iterator[Entry]:
@@ -171,12 +167,9 @@ def _of_block(line: int, block: str, words: dict[str, str], has_radii: bool) -> 
     is_geometry = bool(above) if kind is None else {**_OF_LATHE, **_OF_RADII}[kind]
     if not number or (has_radii and kind in _OF_LATHE):
         return  # of the work shift, or of lengths
-    if "R" in words:
-        yield Entry(line, str(number), is_geometry, "radius", float(words["R"]))
-    if "X" in words:
-        yield Entry(line, str(number), is_geometry, "x", float(words["X"]))
-    if "Q" in words:
-        yield Entry(line, str(number), is_geometry, "nose", float(words["Q"]))
+    for address, key in (("R", "radius"), ("X", "x"), ("Q", "nose")):
+        if address in words:
+            yield Entry(line, str(number), is_geometry, key, float(words[address]))
 
 
 def _number(written: str | None) -> int | None:

@@ -176,9 +176,9 @@ def extract_statements(code: Bytes, language: str) -> Extracted:
             begin = after
     return Extracted(
         np.array(statements, np.int64),
-        _ranges(labels),
-        _ranges(programs),
-        _ranges(heads),
+        Ranges.of(labels),
+        Ranges.of(programs),
+        Ranges.of(heads),
         is_joined,
         np.array(commas, np.int64),
         np.array(quotes, np.int64),
@@ -202,11 +202,6 @@ def _decimal_commas(line: bytes) -> list[int]:
             commas.append(match.start(1))
             depth += 1
     return commas
-
-
-def _ranges(places: list[tuple[int, int]]) -> Ranges:
-    start, end = np.array(places, np.int64).reshape(-1, 2).T
-    return Ranges(start, end)
 
 
 def _join(code: Bytes) -> bool:

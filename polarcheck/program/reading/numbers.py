@@ -112,12 +112,17 @@ def read_numbers(code: Bytes, start: Positions, end: Positions) -> Numbers:
 
 def _with_empty(count: int, index: Positions, numbers: Numbers) -> Numbers:
     """These numbers at their index among `count` ones, the others of which have no characters."""
-    nothing = np.zeros(count, np.int32)
-    fault = np.full(count, NumberFault.NO_DIGITS, np.uint8)
-    result = Numbers(np.full(count, np.nan), nothing, nothing.copy(), np.zeros(count, bool), fault)
+    result = faulty_numbers(count, NumberFault.NO_DIGITS)
     for column, written in zip(msgspec.structs.astuple(result), msgspec.structs.astuple(numbers), strict=True):
         column[index] = written
     return result
+
+
+def faulty_numbers(count: int, fault: NumberFault) -> Numbers:
+    """So many numbers without characters, which have the same fault."""
+    nothing = np.zeros(count, np.int32)
+    faults = np.full(count, fault, np.uint8)
+    return Numbers(np.full(count, np.nan), nothing, nothing.copy(), np.zeros(count, bool), faults)
 
 
 def _eight_digits(eight: Masks) -> Floats:

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import itertools
 import re
-from collections.abc import Iterator
-from typing import Any
+from collections.abc import Iterator, Sequence
+from typing import Any, Self
 
 import msgspec
 import numpy as np
@@ -63,6 +63,11 @@ class Ranges(Table, frozen=True):
 
     start: Positions
     end: Positions
+
+    @classmethod
+    def of(cls, spans: Sequence[tuple[int, int]]) -> Self:
+        """The table of spans, each with its start and its end."""
+        return cls(*np.array(spans, np.int64).reshape(-1, 2).T)
 
 
 class Surroundings(msgspec.Struct, frozen=True):
@@ -162,8 +167,7 @@ def _marks_of_channels(code: Bytes, channel_mark: str, wait_mark: str) -> list[R
         spans += [match.span() for match in wait.finditer(code.tobytes())]
     if not spans:
         return []
-    start, end = np.array(sorted(spans), np.int64).T
-    marks = Ranges(start, end)
+    marks = Ranges.of(sorted(spans))
     blank(code, marks)
     return [marks]
 
@@ -303,8 +307,7 @@ def _tags(code: Bytes) -> Ranges:
     """Find and blank tags of HTML, in a file with closing tags: `<b>` alone would be the name of a program."""
     data = code.tobytes()
     spans = [tag.span() for tag in re.finditer(_TAG, data)] if b"</" in data else []
-    start, end = np.array(spans, np.int64).reshape(-1, 2).T
-    tags = Ranges(start, end)
+    tags = Ranges.of(spans)
     blank(code, tags)
     return tags
 

@@ -14,7 +14,7 @@ from polarcheck.foundation.patterns import lazy_pattern
 from polarcheck.program.reading.characters import KINDS, Character
 from polarcheck.program.reading.language_blocks import extract_statements
 from polarcheck.program.reading.letters import read_as_digits
-from polarcheck.program.reading.numbers import NumberFault, Numbers, read_numbers
+from polarcheck.program.reading.numbers import NumberFault, faulty_numbers, read_numbers
 from polarcheck.program.reading.prose import find_prose
 from polarcheck.program.reading.source import CTRL_Z, LF, Bytes, Positions, Source
 from polarcheck.program.reading.surroundings import BLANKS, Ranges, foreign, narrow, read_surroundings, united
@@ -404,14 +404,7 @@ def _with_loose(
     dots = Ranges(start[is_dots], end[is_dots])
     loose = ~is_dots
     count = int(np.count_nonzero(loose))
-    nothing = np.zeros(count, np.int32)
-    numbers = Numbers(
-        np.full(count, np.nan),
-        nothing,
-        nothing,
-        np.zeros(count, bool),
-        np.full(count, NumberFault.NO_ADDRESS, np.uint8),
-    )
+    numbers = faulty_numbers(count, NumberFault.NO_ADDRESS)
     block = (np.searchsorted(breaks, begins[loose]) - 1).astype(marks.at.dtype)
     extra = Words(*(np.zeros(count, np.uint8), *msgspec.structs.astuple(numbers), block, start[loose], end[loose]))
     index = np.searchsorted(words.start, extra.start)
