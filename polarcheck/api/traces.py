@@ -14,7 +14,7 @@ from polarcheck.api.keywords import ExecutionKeywords, PathName, takes
 from polarcheck.api.loaded_program import NAMELESS, Call, Program
 from polarcheck.api.values import choice, length
 from polarcheck.columns.path.executed_moves import KINDS, PROGRAMMED, TOOL, executed_moves
-from polarcheck.foundation.arrays import Floats, Points, Rows, Table
+from polarcheck.foundation.arrays import Floats, Points, Rows, Table, side_by_side
 from polarcheck.foundation.states import Motion
 from polarcheck.geometry.segments import Curves, segments
 from polarcheck.program.reading.files import LARGEST
@@ -135,7 +135,7 @@ class Trace(Table, frozen=True, eq=False):
 
     def __iter__(self) -> Iterator[Move]:
         names = self._columns()
-        for values in zip(*(getattr(self, name).tolist() for name in names), strict=True):
+        for values in side_by_side(*(getattr(self, name) for name in names)):
             fields: dict[str, Any] = dict(zip(names, values, strict=True))
             pairs = {name: tuple(fields[name]) for name in _OF_PAIRS}
             yield Move(**{**fields, **pairs})
@@ -178,7 +178,7 @@ class Trace(Table, frozen=True, eq=False):
         return np.asarray(points[used][1:])
 
     def __repr__(self) -> str:
-        sections = len({*zip(self.channel.tolist(), self.section.tolist(), strict=True)})
+        sections = len({*side_by_side(self.channel, self.section)})
         return f"<Trace of {self.file}: {len(self)} moves in {sections} sections on {self.machine}>"
 
 

@@ -14,7 +14,7 @@ import numpy as np
 from polarcheck.checking.called_files import in_the_file
 from polarcheck.checking.channel_reports import first_runs
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Floats
+from polarcheck.foundation.arrays import Floats, side_by_side
 from polarcheck.foundation.finding import FASTEST, FASTEST_PER_REVOLUTION, LOWEST_Z, FileReport, Finding, Outline
 from polarcheck.foundation.states import Motion
 from polarcheck.program.reading.source import Source
@@ -151,9 +151,7 @@ def _without_comments(texts: Sequence[Text]) -> str:
     for start, end in sorted(
         span
         for text_with_comments in texts
-        for span in zip(
-            text_with_comments.comments.start.tolist(), text_with_comments.comments.end.tolist(), strict=True
-        )
+        for span in side_by_side(text_with_comments.comments.start, text_with_comments.comments.end)
     ):
         if start >= copied:
             pieces += [text[copied:start], "\n" * text.count("\n", start, end)]

@@ -13,7 +13,7 @@ import numpy as np
 
 from polarcheck.columns.contour.loop_edits import Edit
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Rows
+from polarcheck.foundation.arrays import Rows, side_by_side
 from polarcheck.foundation.states import Side
 from polarcheck.rules.editing import Replace, content_of, is_head, is_plain, separator, without, words_of
 
@@ -109,7 +109,7 @@ def unneeded(trace: Trace, own: Rows) -> Iterator[list[CodeEdit]]:
     is_on_arc = ~has_cancel & trace.path.is_arc[ramp]
     words = np.sort(np.append(sides[is_in_force | comes_again | is_on_arc], steps))
     rows = trace.run.row[words]
-    for word, row in zip(words.tolist(), rows.tolist(), strict=True):
+    for word, row in side_by_side(words, rows):
         is_inside = own[0] < row < own[-1]
         is_alone = own[0] - _NEAR <= row <= own[-1] + _NEAR and not trace.path.travels[row]
         if (is_inside or is_alone) and is_plain(trace.run, row):

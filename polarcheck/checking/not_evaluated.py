@@ -28,7 +28,7 @@ from polarcheck.columns.filling import before
 from polarcheck.columns.trace import Trace
 from polarcheck.columns.words.macro_faults import ENDLESS_LOOP, Faults, reason_of
 from polarcheck.columns.words.unknown_words import UnknownItem, UnknownWords
-from polarcheck.foundation.arrays import Floats, Mask, Rows, first_of_each
+from polarcheck.foundation.arrays import Floats, Mask, Rows, first_of_each, side_by_side
 from polarcheck.foundation.errors import TooHardError
 from polarcheck.foundation.finding import Finding, NotEvaluated, Undecided
 from polarcheck.geometry.tolerances import CHORDS, CROSSINGS, FARTHEST
@@ -284,9 +284,7 @@ def _unknown_columns(tables: Tables, rule: Rule) -> Iterator[Missing]:
             rows = rows[~(tables["feeds"].missing | tables["feeds"].lost)[rows]]  # these have a finding already
         cause = cause_of(trace, need, rows)
         first, counts = _groups(cause)
-        for row, first_cause, count in sorted(
-            zip(rows[first].tolist(), cause[first].tolist(), counts.tolist(), strict=True)
-        ):
+        for row, first_cause, count in sorted(side_by_side(rows[first], cause[first], counts)):
             # Offset lists give the nose type for turning tools only.
             yield Missing(rule.name, kind, first_cause, why(need, tables, row), count, matters=need != "nose")
 
@@ -347,7 +345,7 @@ def _ramps_of_center(tables: Tables, rule: Rule) -> Iterator[Missing]:
         (trace.compensation.starts_up | trace.compensation.cancels) & trace.compensation.is_path_of_center
     )
     first, counts = _groups(trace.tools.offset_number[ramps])
-    for row, count in sorted(zip(ramps[first].tolist(), counts.tolist(), strict=True)):
+    for row, count in sorted(side_by_side(ramps[first], counts)):
         reason = (
             f"R of offset {offset(trace.tools, row)} is taken as 0, since every ramp is shorter than the radius of its "
             f"comment; whether they are too short is open: {to_give(trace.tools, trace.machine, row, 'radius')}"

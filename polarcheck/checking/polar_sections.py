@@ -16,7 +16,7 @@ from polarcheck.columns.modes.sections import Sections
 from polarcheck.columns.path.center import Center
 from polarcheck.columns.path.ramps import Ramps
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Floats, Mask, Rows, mask_at
+from polarcheck.foundation.arrays import Floats, Mask, Rows, mask_at, side_by_side
 from polarcheck.foundation.errors import TooHardError
 from polarcheck.foundation.finding import FileReport, KnownStock, PolarSection
 from polarcheck.foundation.states import Units
@@ -68,15 +68,13 @@ def _polar_sections(trace: Trace, dynamics: Dynamics, center: Center, ramps: Ram
     highest = _of_sections(sections, c_feed, np.maximum, -np.inf)
     fastest = _fastest(trace, c_feed, highest)
     meets = np.flatnonzero(trace.path.cuts & center.meets_center)
-    met = dict(zip(trace.mode.section[meets[::-1]].tolist(), meets[::-1].tolist(), strict=True))
+    met = dict(side_by_side(trace.mode.section[meets[::-1]], meets[::-1]))
     at_entry = _offset_rows(trace)
     nearest = _of_sections(sections, np.where(trace.path.cuts, tool_center.nearest, np.inf), np.minimum, np.inf)
     ramp = _ramp_used(trace, ramps)
     limit, rotary = rounded(trace.machine.limits.c_feed), trace.machine.polar.rotary_address
     listed = []
-    for index, (enter, end, row, fast) in enumerate(
-        zip(sections.enter.tolist(), sections.last.tolist(), at_entry.tolist(), fastest.tolist(), strict=True)
-    ):
+    for index, (enter, end, row, fast) in enumerate(side_by_side(sections.enter, sections.last, at_entry, fastest)):
         time = float(dynamics.section_time[index])
         listed.append(
             PolarSection(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeAlias, TypeVar
 
 import msgspec
@@ -137,6 +137,11 @@ def column_at(count: int, places: NDArray[Any] | Sequence[int], values: Any, rem
 
 
 # np.unique and, for some arguments, np.isin import numpy.ma, 10 % of the time of a small check.
+
+
+def side_by_side(*columns: NDArray[Any]) -> Iterator[tuple[Any, ...]]:
+    """Return the elements of columns of the same length row by row, as values of Python."""
+    return zip(*(column.tolist() for column in columns), strict=True)
 
 
 def first_in_run(*columns: NDArray[Any]) -> Mask:

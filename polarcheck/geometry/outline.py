@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, runs
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, runs, side_by_side
 from polarcheck.foundation.states import Motion
 from polarcheck.geometry.plane_path import PlanePath
 from polarcheck.geometry.segments import Curves
@@ -97,7 +97,7 @@ def _from_block(move: Rows, first: Rows, count: Rows, closed: Mask) -> Rows:
     """The order in which closed chains begin where a block does; a face begins them anywhere."""
     order = np.arange(len(move))
     last = first + count - 1
-    for begin, end in zip(first[closed].tolist(), last[closed].tolist(), strict=True):
+    for begin, end in side_by_side(first[closed], last[closed]):
         changes = np.flatnonzero(move[begin : end + 1] != move[begin])
         if move[begin] == move[end] and len(changes):
             order[begin : end + 1] = np.roll(order[begin : end + 1], -int(changes[0]))

@@ -13,7 +13,7 @@ import numpy as np
 import shapely  # type: ignore[import-untyped]
 
 from polarcheck.columns.metal.milled import Cuts
-from polarcheck.foundation.arrays import Points, cached_property
+from polarcheck.foundation.arrays import Points, cached_property, side_by_side
 from polarcheck.geometry.comparison.measured_path import MeasuredPath, path_of, path_of_curves
 from polarcheck.geometry.comparison.metal_left import cleared_by, disc, empty, joined, polygon_of
 from polarcheck.geometry.comparison.rounds import Rounds, is_cut_along, no_rounds, round_pieces, rounds_of
@@ -75,6 +75,6 @@ class MilledRings:
             return empty()
         drawn = path_of_curves(list(self._rings.values()))
         far = 2 * radius / rounds.radius
-        chords = zip(drawn.start[rounds.milled].tolist(), drawn.end[rounds.milled].tolist(), strict=True)
+        chords = side_by_side(drawn.start[rounds.milled], drawn.end[rounds.milled])
         wedges = [polygon_of(np.array([0, far * start, far * end, 0])) for start, end in chords]
         return areas.difference(areas.intersection(joined(wedges), disc(radius)), disc(rounds.radius))

@@ -10,7 +10,7 @@ import msgspec
 import numpy as np
 
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Mask, Rows, stretch
+from polarcheck.foundation.arrays import Mask, Rows, side_by_side, stretch
 from polarcheck.foundation.patterns import lazy_pattern
 from polarcheck.program.execution.run import Run
 from polarcheck.program.machines.code_lists import numbers
@@ -111,7 +111,7 @@ def _names(over: str, tables: Tables) -> Rows:
         faults = trace.run.faults
         at = np.flatnonzero([fault.kind in _OF_NAMES for fault in faults])
         starts = np.array([faults[index].start for index in at], np.int64)
-    for index, start in zip(at.tolist(), starts.tolist(), strict=True):
+    for index, start in side_by_side(at, starts):
         if name := _NAME.match(source.excerpt(start, start + _NAME_LENGTH)):
             column[index] = numbers.setdefault(name[1], len(numbers))
     return column

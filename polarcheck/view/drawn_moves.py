@@ -11,7 +11,7 @@ from polarcheck.columns.feed.dynamics import Dynamics
 from polarcheck.columns.path.moves import Moves, z_along
 from polarcheck.columns.path.standing_moves import with_standing
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, States
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, States, side_by_side
 from polarcheck.foundation.states import Motion
 from polarcheck.geometry.cutter_compensation.offset_path import Phase
 from polarcheck.geometry.rates import c_feed
@@ -163,10 +163,7 @@ def _centers(moves: Moves) -> list[tuple[float, float] | None]:
     """Return the center of each arc [mm], None for other moves."""
     is_arc = moves.is_arc & ~np.isnan(moves.center)
     rounded = np.round(moves.center, LENGTH) + 0.0
-    return [
-        (x, c) if has_center else None
-        for x, c, has_center in zip(rounded.real.tolist(), rounded.imag.tolist(), is_arc.tolist(), strict=True)
-    ]
+    return [(x, c) if has_center else None for x, c, has_center in side_by_side(rounded.real, rounded.imag, is_arc)]
 
 
 def _sequence_numbers(trace: Trace) -> dict[int, str]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from polarcheck.foundation.arrays import Points
+from polarcheck.foundation.arrays import Points, side_by_side
 from polarcheck.view.drawn_moves import LENGTH
 from polarcheck.view.part_rings import Ring
 
@@ -36,7 +36,4 @@ def bar_rings(outside: float, bore: float) -> list[Ring]:
     """Return the outline of a bar and of its bore, diameters in mm; NaN is unknown, and a bore of 0 is none."""
     turn = np.exp(2j * np.pi * np.arange(_CORNERS) / _CORNERS)
     rings = [diameter / 2 * turn for diameter in (outside, bore) if diameter > 0] if outside > 0 else []
-    return [
-        list(zip(np.round(ring.real, LENGTH).tolist(), np.round(ring.imag, LENGTH).tolist(), strict=True))
-        for ring in rings
-    ]
+    return [list(side_by_side(np.round(ring.real, LENGTH), np.round(ring.imag, LENGTH))) for ring in rings]

@@ -16,7 +16,7 @@ from polarcheck.columns.metal.coverage import Coverage, Left
 from polarcheck.columns.metal.finished import Level
 from polarcheck.columns.path.moves import Moves
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Floats, Points, Rows, mask_at
+from polarcheck.foundation.arrays import Floats, Points, Rows, mask_at, side_by_side
 from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.polygons import areas
 from polarcheck.geometry.polygons.faces import GRID
@@ -44,9 +44,7 @@ def overcut_marks(
         (overcuts.sweeps, overcuts.sweep_depth, "sweeps"),
     ):
         chosen = _deepest(trace, cuts[depth[cuts.row] > 0])
-        for row, into, deep, point in zip(
-            chosen.row.tolist(), chosen.into.tolist(), chosen.depth.tolist(), chosen.place.tolist(), strict=True
-        ):
+        for row, into, deep, point in side_by_side(chosen.row, chosen.into, chosen.depth, chosen.place):
             keep_time()
             lines = [int(trace.blocks.line_in_file[marked]) for marked in (row, into)]
             size = f"{in_row(deep, trace.lengths, row):length}"

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 
-from polarcheck.foundation.arrays import Points
+from polarcheck.foundation.arrays import Points, side_by_side
 from polarcheck.foundation.errors import TooHardError
 from polarcheck.parts.deviations import Deviations
 from polarcheck.parts.nominal_parts import NominalParts
@@ -80,7 +80,7 @@ def _drawn(
         tolerance *= 2
     for curve in curves:
         point = curve * np.exp(1j * angle)
-        points = list(zip(np.round(point.real, LENGTH).tolist(), np.round(point.imag, LENGTH).tolist(), strict=True))
+        points = list(side_by_side(np.round(point.real, LENGTH), np.round(point.imag, LENGTH)))
         is_closed = len(points) > 3 and points[0] == points[-1]
         (rings if is_closed else lines).append(points[:-1] if is_closed else points)
     agrees = None if comparison is None else comparison.agrees

@@ -11,7 +11,7 @@ from polarcheck.columns.contour.overcuts import Overcuts
 from polarcheck.columns.metal.bar import Bar
 from polarcheck.columns.metal.finished import Finished
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Columns, Floats, Mask, cached_property, different
+from polarcheck.foundation.arrays import Columns, Floats, Mask, cached_property, different, side_by_side
 from polarcheck.geometry.tolerances import ROUNDING
 
 if TYPE_CHECKING:
@@ -138,7 +138,7 @@ class EarlierContours(Columns, frozen=True):
         together &= np.abs(floor[:, None] - floor) <= np.minimum(one_floor[:, None], one_floor) + ROUNDING
         known = trace.path.knows_section_entry[numbers]
         earlier, later = np.nonzero(np.triu(together & known[:, None] & known, 1))
-        return set(zip(numbers[earlier].tolist(), numbers[later].tolist(), strict=True))
+        return set(side_by_side(numbers[earlier], numbers[later]))
 
     def _contours(self, sections: set[int]) -> Iterator[Contour]:
         """The closed contours at the floor of these sections, in the order of the program."""

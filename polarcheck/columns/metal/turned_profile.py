@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from polarcheck.columns.metal.turning_tools import Cuts
-from polarcheck.foundation.arrays import Floats, Rows, different
+from polarcheck.foundation.arrays import Floats, Rows, different, side_by_side
 from polarcheck.geometry.tolerances import ROUNDING
 
 #: A radius that is larger than that of any bar [mm]: it stands for one that is not known between heights.
@@ -55,7 +55,7 @@ class Profile:
         margin = np.where(np.isinf(cuts.high), -0.5, 1.5) * ROUNDING
         first = np.searchsorted(self.z, cuts.low - margin)
         until = np.searchsorted(self.z, cuts.high + ROUNDING * 1.5)
-        for number, (i, j) in enumerate(zip(first.tolist(), until.tolist(), strict=True)):
+        for number, (i, j) in enumerate(side_by_side(first, until)):
             low, high, bulge = cuts.low[number], cuts.high[number], cuts.bulge[number]
             length = high - low if np.isfinite(high) and high > low else 1.0
             share = np.clip((self.z[i:j] - low) / length, 0, 1)

@@ -10,7 +10,7 @@ from polarcheck.columns.filling import before, happened, last_row
 from polarcheck.columns.modes.origin import Origin
 from polarcheck.columns.path.tool_center import ToolCenter
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Columns, Floats, Mask, cached_property, is_among
+from polarcheck.foundation.arrays import Columns, Floats, Mask, cached_property, is_among, side_by_side
 from polarcheck.foundation.states import STATES, Motion
 
 #: Words and modal groups of G codes that may stand beside a D for the cutter.
@@ -177,7 +177,7 @@ class Entry(Columns, frozen=True):
         trace = self.trace
         rows = np.flatnonzero(trace.mode.in_polar | trace.mode.enters)
         numbers, first = np.unique(trace.tools.offset_number[rows], return_index=True)
-        return dict(zip(numbers.tolist(), rows[first].tolist(), strict=True))
+        return dict(side_by_side(numbers, rows[first]))
 
     @cached_property
     def radius_in_mode(self) -> Floats:

@@ -18,7 +18,7 @@ from polarcheck.columns.modes.modal import ModalStates
 from polarcheck.columns.modes.mode import PolarMode
 from polarcheck.columns.path.axes import PlaneAxes
 from polarcheck.columns.path.lengths import RADIUS_FACTOR, Lengths
-from polarcheck.foundation.arrays import Floats, Mask, Points, cached_property, is_among, mask_at
+from polarcheck.foundation.arrays import Floats, Mask, Points, cached_property, is_among, mask_at, side_by_side
 
 #: G18 and G19.
 _OTHER_PLANES = (18, 19)
@@ -165,7 +165,7 @@ def along(linear: AxisPath, virtual: AxisPath, turn: Points) -> Points:
     factor = np.conj(turn[changes]) * turn[changes - 1]
     last = changes - 1
     columns = (x[last], y[last], hangs_x[last], hangs_y[last], factor)
-    for number, (own_x, own_y, takes_x, takes_y, by) in enumerate(zip(*(c.tolist() for c in columns), strict=True)):
+    for number, (own_x, own_y, takes_x, takes_y, by) in enumerate(side_by_side(*columns)):
         before = base[number]
         own_x, own_y = own_x + before.real * takes_x, own_y + before.imag * takes_y
         base[number + 1] = complex(own_x, own_y) if by == 1 else by * complex(own_x, own_y)

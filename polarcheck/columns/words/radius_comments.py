@@ -9,7 +9,7 @@ import numpy as np
 
 from polarcheck.columns.modes.tools import CalledTools
 from polarcheck.columns.words.comments import Comments, named_tool
-from polarcheck.foundation.arrays import is_among
+from polarcheck.foundation.arrays import is_among, side_by_side
 
 #: A longer number calls nothing.
 _LARGEST_T = 1e15
@@ -68,7 +68,7 @@ def radii(comments: Comments, tools: CalledTools) -> dict[int, StatedRadius]:
     words = np.where(number_of_word < _LARGEST_T, number_of_word, 0).astype(np.int64)
     columns = (called, tools.offset_number[rows], tools.tool[rows], words, comments.lengths.scale[rows] != 1.0)
     stated: dict[int, StatedRadius] = {}
-    for block, offset, tool, word, in_inch in zip(*(column.tolist() for column in columns), strict=True):
+    for block, offset, tool, word, in_inch in side_by_side(*columns):
         near = list(of_block.get(block, []))
         near += [c for other in (block - 1, block + 1) if other not in filled for c in of_block.get(other, [])]
         near = [comment for comment in near if named_tool(comment) in (None, tool, word)]

@@ -10,7 +10,7 @@ import numpy as np
 from polarcheck.columns.filling import fill_down
 from polarcheck.columns.modes.origin import Origin
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Columns, Mask, Rows, cached_property, is_among
+from polarcheck.foundation.arrays import Columns, Mask, Rows, cached_property, is_among, side_by_side
 from polarcheck.program.execution.arithmetic import Unknown
 from polarcheck.program.execution.run import NO_VARIABLE
 from polarcheck.program.machines.axis_table import INCREMENTS, NO_AXIS, OF_SPINDLE
@@ -68,7 +68,7 @@ class UnknownWords(Columns, frozen=True):
         trace, words = self.trace, self.trace.run.words
         # The rules that need an offset say that it is not known; nothing else says it of where X0 lies.
         is_data = trace.blocks.listed("data_input") & ~self._sets_tool
-        for index, row, matters in zip(self.index.tolist(), self.row.tolist(), self.matters.tolist(), strict=True):
+        for index, row, matters in side_by_side(self.index, self.row, self.matters):
             variable = trace.run.unknown_words[index]
             of_data = bool(is_data[row]) and not self._sets_origin[index]
             yield UnknownItem(row, int(words.start[index]), int(words.end[index]), variable, matters, of_data)

@@ -8,7 +8,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck.foundation.arrays import Mask, Rows, cached_property, column_at, first_in_run, is_among, repeated
+from polarcheck.foundation.arrays import (
+    Mask,
+    Rows,
+    cached_property,
+    column_at,
+    first_in_run,
+    is_among,
+    repeated,
+    side_by_side,
+)
 from polarcheck.foundation.patterns import lazy_pattern
 from polarcheck.program.execution.programs import block_text, find_programs
 from polarcheck.program.machines.code_lists import is_code
@@ -422,7 +431,7 @@ class Written:
         """Letters or digits outside a program, other than in comments."""
         outside = self.text.outside
         data = self.text.source.code.tobytes()
-        places = zip(outside.start.tolist(), outside.end.tolist(), strict=True)
+        places = side_by_side(outside.start, outside.end)
         texts = (_COMMENT.sub(b"", data[start:end]) for start, end in places)
         return np.array([_LETTER_OR_DIGIT.search(text) is not None for text in texts], bool)
 

@@ -13,7 +13,7 @@ import numpy as np
 from polarcheck.editor.structure.document import Document
 from polarcheck.editor.structure.lexing import Token, tokens
 from polarcheck.editor.structure.mention import Computed, Into, Kind, Mention, Role
-from polarcheck.foundation.arrays import cached_property
+from polarcheck.foundation.arrays import cached_property, side_by_side
 from polarcheck.program.execution.listing import Listing
 from polarcheck.program.execution.macro import VariableKind, Variables
 from polarcheck.program.execution.macro_tokens import in_capitals
@@ -137,7 +137,7 @@ class Mentions:
 
     def _labels(self) -> Iterator[Mention]:
         names = self.listing.text.labels
-        for start, end, block in zip(names.start.tolist(), names.end.tolist(), names.block.tolist(), strict=True):
+        for start, end, block in side_by_side(names.start, names.end, names.block):
             name = self.listing.text.source.excerpt(start, end).upper()
             yield self._mention(Kind.LABEL, Role.DEFINES, name, (start, end), block, start)
         for block, start, written in self._macro_blocks:
@@ -153,17 +153,13 @@ class Mentions:
         words = text.words
         by_block = {program.first: program for program in self.listing.programs.programs if program.has_head}
         heads = np.flatnonzero(begins_program(words))
-        for start, end, block in zip(
-            *(column[heads].tolist() for column in (words.start, words.end, words.block)), strict=True
-        ):
+        for start, end, block in side_by_side(words.start[heads], words.end[heads], words.block[heads]):
             program = by_block.get(block)
             digits = _DIGITS.search(text.source.excerpt(start, end))
             if program is not None and digits and program.number is not None:
                 span = start + digits.start(), start + digits.end()
                 yield self._mention(Kind.PROGRAM, Role.DEFINES, program.number, span, block, start)
-        for start, end, block in zip(
-            *(column.tolist() for column in (text.names.start, text.names.end, text.names.block)), strict=True
-        ):
+        for start, end, block in side_by_side(text.names.start, text.names.end, text.names.block):
             program = by_block.get(block)
             written = text.source.excerpt(start, end)
             name = name_at_head(written).strip("<>").strip()

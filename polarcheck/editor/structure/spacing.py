@@ -17,6 +17,7 @@ from lsprotocol import types
 from polarcheck.editor.open_text import OpenText
 from polarcheck.editor.structure import block_ranges
 from polarcheck.editor.structure.document import Document, block_at
+from polarcheck.foundation.arrays import side_by_side
 from polarcheck.program.execution.listing import Listing
 from polarcheck.program.execution.programs import block_text
 from polarcheck.program.execution.run import begins_program
@@ -107,12 +108,12 @@ def _pieces(listing: Listing, low: int, high: int) -> dict[int, list[tuple[int, 
     words = text.words
     begin, end = np.searchsorted(words.block, (low, high)).tolist()
     columns = (words.block, words.start, words.end, words.address)
-    for block, start, stop, address in zip(*(column[begin:end].tolist() for column in columns), strict=True):
+    for block, start, stop, address in side_by_side(*(column[begin:end] for column in columns)):
         kind = "/" if address == ord("/") else "," if address >= ord("a") else "word"
         pieces.setdefault(block, []).append((start, stop, kind))
     begin, end = np.searchsorted(text.comments.block, (low, high)).tolist()
     spans = (text.comments.block, text.comments.start, text.comments.end)
-    for block, start, stop in zip(*(column[begin:end].tolist() for column in spans), strict=True):
+    for block, start, stop in side_by_side(*(column[begin:end] for column in spans)):
         pieces.setdefault(block, []).append((start, stop, "comment"))
         pieces[block].sort()
     return pieces
@@ -147,7 +148,7 @@ def _of_statement(listing: Listing, block: int) -> Iterator[Edit]:
     if _READS_BLANKS.search(written):
         return
     low, high = np.searchsorted(text.comments.block, (block, block + 1)).tolist()
-    spans = list(zip(text.comments.start[low:high].tolist(), text.comments.end[low:high].tolist(), strict=True))
+    spans = list(side_by_side(text.comments.start[low:high], text.comments.end[low:high]))
     bare, lead = len(written.rstrip()), len(written) - len(written.lstrip())
     for gap in _BLANKS.finditer(written):
         span = start + gap.start(), start + gap.end()
@@ -205,7 +206,4 @@ def _facts(listing: Listing) -> tuple[object, ...]:
 def _written(text: Text, table: str) -> list[tuple[int, str]]:
     spans = getattr(text, table)
     content = text.source.text
-    return [
-        (block, content[start:end])
-        for block, start, end in zip(spans.block.tolist(), spans.start.tolist(), spans.end.tolist(), strict=True)
-    ]
+    return [(block, content[start:end]) for block, start, end in side_by_side(spans.block, spans.start, spans.end)]

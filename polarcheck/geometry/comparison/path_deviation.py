@@ -16,7 +16,7 @@ import heapq
 import msgspec
 import numpy as np
 
-from polarcheck.foundation.arrays import Floats, Rows, last_in_run
+from polarcheck.foundation.arrays import Floats, Rows, last_in_run, side_by_side
 from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.comparison.anchors import anchors
 from polarcheck.geometry.comparison.free_space import Budget, Corner, Meeting, OverBudgetError, frechet, is_within
@@ -204,7 +204,7 @@ def _measured(pieces: _Pieces, tolerance: float) -> tuple[float, Location, int]:
 
 def _corners(line: Polyline, corners: Rows, piece: int) -> list[Corner]:
     part = line[int(corners[piece]) : int(corners[piece + 1]) + 1]
-    return list(zip(part.point.real.tolist(), part.point.imag.tolist(), part.z.tolist(), strict=True))
+    return list(side_by_side(part.point.real, part.point.imag, part.z))
 
 
 def _location(pieces: _Pieces, piece: int, meeting: Meeting) -> Location:

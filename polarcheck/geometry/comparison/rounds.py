@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, first_in_run, runs
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, first_in_run, runs, side_by_side
 from polarcheck.geometry.comparison.measured_path import MeasuredPath
 
 #: A curve that leaves the round by no more than the tolerance and this [mm] is no wall.
@@ -86,7 +86,7 @@ def round_pieces(drawn: MeasuredPath, tolerance: float) -> Rows:
     on = (np.abs(drawn.start) >= reach - limit) & (np.abs(drawn.end) >= reach - limit) & (middle >= reach - limit)
     begins = first_in_run(drawn.of) | ~np.append(False, on[:-1])
     piece = np.where(on, np.cumsum(on & begins) - 1, -1)
-    for begin, end in zip(*(index.tolist() for index in runs(drawn.of)), strict=True):
+    for begin, end in side_by_side(*runs(drawn.of)):
         if on[begin] and on[end] and drawn.start[begin] == drawn.end[end]:
             piece[piece == piece[end]] = piece[begin]
     length = np.abs(drawn.end - drawn.start)

@@ -15,7 +15,7 @@ from typing import NamedTuple, TypeVar
 import msgspec
 import numpy as np
 
-from polarcheck.foundation.arrays import Mask, cached_property, stretch
+from polarcheck.foundation.arrays import Mask, cached_property, side_by_side, stretch
 from polarcheck.foundation.patterns import lazy_pattern
 from polarcheck.program.execution.run import begins_program, is_code
 from polarcheck.program.machines.machine import Machine
@@ -267,7 +267,7 @@ def block_text(text: Text, block: int) -> str:
     spans: list[tuple[int, int]] = []
     for table in (text.comments, text.prose, text.labels):
         chosen = slice(*stretch(table.block, block, block + 1))
-        spans += zip(table.start[chosen].tolist(), table.end[chosen].tolist(), strict=True)
+        spans += side_by_side(table.start[chosen], table.end[chosen])
     if not (strays or letters or spans):
         return written
     characters = list(written)  # a text would be copied for each of them

@@ -14,6 +14,7 @@ import re
 import msgspec
 import numpy as np
 
+from polarcheck.foundation.arrays import side_by_side
 from polarcheck.foundation.patterns import lazy_pattern
 from polarcheck.program.reading.source import LF, PRINTED_QUOTES, Bytes, Positions
 from polarcheck.program.reading.surroundings import Ranges
@@ -134,7 +135,7 @@ def extract_statements(code: Bytes, language: str) -> Extracted:
     heads: list[tuple[int, int]] = []
     commas: list[int] = []
     quotes: list[int] = []
-    for start, end in zip(starts.tolist(), breaks[index].tolist(), strict=True):
+    for start, end in side_by_side(starts, breaks[index]):
         line = code[start:end].tobytes().upper()
         if line.lstrip(_BLANK)[:2] == b"O<":
             continue

@@ -11,7 +11,7 @@ import re
 
 import numpy as np
 
-from polarcheck.foundation.arrays import different
+from polarcheck.foundation.arrays import different, side_by_side
 from polarcheck.foundation.patterns import lazy_pattern
 from polarcheck.program.reading.source import DASH, LF, Bytes, Positions
 
@@ -65,7 +65,7 @@ def read_as_digits(code: Bytes) -> Positions:
     starts = np.append(0, breaks + 1)[index]
     places = [
         start + offset
-        for start, end in zip(starts.tolist(), breaks[index].tolist(), strict=True)
+        for start, end in side_by_side(starts, breaks[index])
         for offset in _in_block(code[start:end].tobytes())
     ]
     positions = np.array(places, np.int64)

@@ -17,7 +17,7 @@ from typing import TypeAlias
 import msgspec
 import numpy as np
 
-from polarcheck.foundation.arrays import Mask, Rows
+from polarcheck.foundation.arrays import Mask, Rows, side_by_side
 from polarcheck.program.reading.source import LF, Bytes, Source
 from polarcheck.program.reading.surroundings import Ranges, blank
 
@@ -118,7 +118,7 @@ def prose_in_blocks(source: Source, code: Bytes, is_suspect: Mask) -> Ranges:
     breaks = np.append(np.flatnonzero((code == LF) | (code == _SEMICOLON)), len(code))
     starts = np.append(0, breaks[:-1] + 1)
     index = np.flatnonzero(np.logical_or.reduceat(is_suspect, starts))[:_BLOCK_LIMIT]
-    places = zip(starts[index].tolist(), breaks[index].tolist(), strict=True)
+    places = side_by_side(starts[index], breaks[index])
     rows = array("q")
     for begin, end in places:
         block = data[begin : min(end, begin + _EXAMINED)]

@@ -14,7 +14,7 @@ from typing import Any, Self
 import msgspec
 import numpy as np
 
-from polarcheck.foundation.arrays import Mask, Table, first_in_run, is_among, mask_at
+from polarcheck.foundation.arrays import Mask, Table, first_in_run, is_among, mask_at, side_by_side
 from polarcheck.foundation.patterns import lazy_pattern
 from polarcheck.program.reading.source import CR, LF, Bytes, Positions
 
@@ -336,7 +336,7 @@ def _semicolon_remarks(code: Bytes, lines: Positions) -> Ranges:
         return tails
     tails = tails[_has_text(code, tails.start + 1, tails.end)]
     data = code.tobytes()
-    places = zip(tails.start.tolist(), tails.end.tolist(), strict=True)
+    places = side_by_side(tails.start, tails.end)
     is_remark = [_READS_AS_BLOCKS.fullmatch(data, start + 1, end) is None for start, end in places]
     remarks = tails[np.array(is_remark, bool)]
     blank(code, remarks)
