@@ -309,10 +309,10 @@ def test_what_a_check_finds_in_one_of_two_programs_is_not_the_same_metal(
 @looped(
     ("old", "new", "code"),
     [
-        ("G64 ADIS=0.1", "G64 ADIS=5", 2),
-        ("G64 ADIS=R1", "G64 ADIS=R2", 2),
-        ("SOFT", "BRISK", 2),
-        ("LIMS=500", "", 2),
+        ("G64 ADIS=0.1", "G64 ADIS=5", 1),
+        ("G64 ADIS=R1", "G64 ADIS=R2", 1),
+        ("SOFT", "BRISK", 1),
+        ("LIMS=500", "", 1),
         ("SOFT ; BRISK", "SOFT", 0),
         ('MSG("SOFT")', "STOPRE", 0),
     ],
@@ -322,16 +322,66 @@ def test_what_changes_speeds_and_corners_unseen_is_not_the_same_metal(
 ) -> None:
     texts = [program("siemens-transmit", ("/G42", f"/{words}/G42" if words else "/G42")) for words in (old, new)]
     assert compared(tmp_path, "siemens-transmit", *texts).exit_code == code
+    assert certified(tmp_path, "siemens-transmit", *texts).exit_code == code
 
 
 @looped(
-    ("old", "new", "code"),
-    [("VZOFZ=5", "VZOFZ=6", 2), ("VZOFZ=5", "", 2), ("VTOFZ[1]=VC1", "VTOFZ[1]=VC2", 2), ("G20 HP=1", "G20 HP=2", 1)],
+    ("old", "new"),
+    [
+        *(("VZOFZ=5", "VZOFZ=6"), ("VZOFZ=5", ""), ("VTOFZ[1]=VC1", "VTOFZ[1]=VC2"), ("G20 HP=1", "G20 HP=2")),
+        *(("VLMON[1]=5", "VLMON[1]=6"), ("VXYZ=5", ""), ("N5 VZOFZ=5", "N7 VZOFZ = 5")),
+    ],
 )
-def test_what_is_no_word_of_the_path_is_compared(old: str, new: str, code: int, tmp_path: Path) -> None:
+def test_what_is_no_word_of_the_path_is_compared(old: str, new: str, tmp_path: Path) -> None:
     texts = [program("okuma-osp", ("/G0 X60", f"/{words}/G0 X60" if words else "/G0 X60")) for words in (old, new)]
     assert [report_of(text, "okuma-osp", CUTTER).verdict for text in texts] == ["pass", "pass"]
+    code = int(not new.startswith("N7"))
     assert compared(tmp_path, "okuma-osp", *texts).exit_code == code
+    assert certified(tmp_path, "okuma-osp", *texts).exit_code == code
+
+
+@looped("control", ["fanuc-30i", "haas-lathe", "siemens-transmit", "gsk-988"])
+def test_the_plane_at_the_beginning_of_a_section_is_that_of_the_golden_trace(control: str, tmp_path: Path) -> None:
+    sound, text = program(control), program(control, ("/G0 X60", "/G18/G0 X60"))
+    code = int(control != "haas-lathe")  # G17 stands before its G112
+    assert compared(tmp_path, control, sound, text).exit_code == code
+    assert certified(tmp_path, control, sound, text).exit_code == code
+
+
+@looped("control", ["fanuc-30i", "haas-lathe", "okuma-osp", "gsk-988"])
+def test_what_leaves_the_mode_in_another_program_is_not_judged(control: str, tmp_path: Path) -> None:
+    end = "RTS" if control == "okuma-osp" else "M99"
+    place = "/Z2 F1000/" if control == "okuma-osp" else "/Z2. F1000./" if "haas" in control else "/Z2. F1000/"
+    text = program(control, (place, f"{place}{end}/")).partition(f"\n{end}\n")[0] + f"\n{end}\n"
+    report = report_of(text, control, CUTTER)
+    assert (report.verdict, [finding.rule for finding in report.findings]) == ("unverified", [])
+    reasons = [gap.reason for gap in report.not_evaluated if gap.matters]
+    assert any(f"{end} in line" in reason and "leaves the polar mode on" in reason for reason in reasons)
+    (file,) = written(tmp_path, text)
+    result = run("compensate", "--center", "--machine", control, "--no-config", "--tool", CUTTER, file)
+    assert (result.exit_code, result.stdout) == (2, "")
+
+
+@looped("words", ["G10 P1 R#500", "G10 P1 R5.", "#2001=5."])
+def test_an_offset_that_is_set_in_the_mode_is_no_path_of_the_tool_center(words: str, tmp_path: Path) -> None:
+    text = program("fanuc-30i", ("/G42", f"/{words}/G42"))
+    assert report_of(text, "fanuc-30i", CUTTER).verdict == "fail"
+    (file,) = written(tmp_path, text)
+    result = run("compensate", "--center", "--machine", "fanuc-30i", "--no-config", "--tool", CUTTER, file)
+    assert (result.exit_code, result.stdout) == (2, "")
+
+
+@looped("control", ["fanuc-30i", "haas-lathe", "siemens-transmit", "okuma-osp"])
+def test_a_warning_in_one_program_alone_is_not_the_same_metal(control: str, tmp_path: Path) -> None:
+    sound = program(control)
+    twice = sound.replace("F150", "F150. F150." if control == "haas-lathe" else "F150 F150").replace("..", ".")
+    assert [finding.rule for finding in report_of(twice, control, CUTTER).findings] == ["word-repeated"]
+    result = compared(tmp_path, control, sound, twice)
+    assert (result.exit_code, "a check finds word-repeated" in result.stdout) == (2, True)
+    # With another comment it may be what that says.
+    comment = "; TEXT" if control == "siemens-transmit" else "(TEXT)"
+    result = compared(tmp_path, control, sound, twice.replace("\nG0 X60", f"\n{comment}\nG0 X60"))
+    assert (result.exit_code, "a check finds word-repeated" in result.stdout) == (0, True)
 
 
 @looped(("words", "verdict"), [("VC[VC500]=5", "unverified"), ("VC[2]=5", "pass"), ("VC[1+1]=VC500", "unverified")])

@@ -187,6 +187,17 @@ def contours_outside(trace: Trace) -> tuple[str, int]:
     return f"{reason}: look at it on the control", len(rows)
 
 
+def left_by_caller(trace: Trace) -> tuple[str, int]:
+    """Where M99 of a program that nothing here calls leaves the mode on, and how many sections it leaves so."""
+    sections, code = trace.mode.sections, trace.machine.macro.program_returns
+    open_at_end = trace.blocks.mask_of(sections.last[sections.returned] + 1) | trace.blocks.mask_of(sections.last)
+    rows = (open_at_end & trace.blocks.codes(*code) & (trace.run.depth == 0)).nonzero()[0]
+    if not len(rows):
+        return "", 0
+    reason = f"{block_and_line(trace, int(rows[0]))} leaves the polar mode on: {trace.machine.polar.off[0]} and what"
+    return f"{reason} follows stand in no program here: check the program that calls this one", len(rows)
+
+
 def on_cylinder(trace: Trace) -> tuple[str, int]:
     """Where cylindrical interpolation is begun, which is not simulated, and in how many blocks it is in force."""
     rows = trace.mode.on_cylinder.nonzero()[0]

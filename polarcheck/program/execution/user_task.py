@@ -29,11 +29,9 @@ from polarcheck.program.execution.variable_names import FIRST_VARIABLE, Names
 from polarcheck.program.machines.machine import Machine
 from polarcheck.program.reading.excerpt import shortened
 
-#: Zero offset, zero shift and tool offset of Z: they move nothing on the polar plane.
-_OF_Z: Final = re.compile(r"V(?:ZOF|ZSH|TOF)Z")
-#: What shifts or offsets an axis: zero offset, zero shift, tool offset, nose radius. Other values of the control, as
-#: those of the load monitor or of outputs, move nothing.
-_OF_POSITION: Final = re.compile(r"V(?:ZOF|ZSH|TOF|ETF|NSR)[A-Z0-9]*+")
+#: What shifts or offsets an axis of the polar plane: zero offset, zero shift and tool offset but those of Z, and the
+#: nose radius. Other values of the control, as those of the load monitor or of outputs, move nothing there.
+_OF_POSITION: Final = re.compile(r"V(?:(?:ZOF|ZSH|TOF)(?!Z\b)|ETF|NSR)[A-Z0-9]*+")
 #: Input and output of data, and what a schedule program has.
 _NO_MOVE: Final = frozenset(("GET", "PUT", "READ", "WRITE", "PSELECT", "LPRINT"))
 #: How much of what is not simulated a message names [characters].
@@ -186,9 +184,9 @@ class _Block(SpokenBlock):
             value = self.task_expression()
             if index is not None:
                 self.before.append(Statement(Kind.ASSIGN, first.start, self.last_end, target=index, value=value))
-        is_of_z = _OF_Z.fullmatch(first.text) is not None
-        if _OF_POSITION.fullmatch(first.text):
-            self.leave(first, moves=not is_of_z, matters=not is_of_z)
+        if index is None:
+            is_of_position = _OF_POSITION.fullmatch(first.text) is not None
+            self.leave(first, moves=is_of_position, matters=is_of_position)
 
     # ---- the flow ----
 

@@ -93,7 +93,7 @@ class GoldenTrace(msgspec.Struct, frozen=True):
 def orders_of(trace: Trace) -> Iterator[GoldenOrder]:
     """Yield the orders of a channel in the order in which they run, with their lines."""
     channel, z_before = trace.text.source.channel, before(trace.path.z, trace.blocks.starts, np.nan)
-    in_order = [*steps(trace, is_same_machine=True), *_moves_outside(trace)]
+    in_order = [*steps(trace, is_same_machine=True), *_planes_at_entry(trace), *_moves_outside(trace)]
     for step in sorted(in_order, key=lambda step: step.row):
         section = int(trace.mode.section[step.row])
         begun = int(np.searchsorted(trace.mode.sections.enter, step.row, side="right"))
@@ -108,6 +108,15 @@ def orders_of(trace: Trace) -> Iterator[GoldenOrder]:
             channel=channel or UNSET,
             line=int(trace.blocks.line_in_file[step.row]),
         )
+
+
+def _planes_at_entry(trace: Trace) -> Iterator[Step]:
+    """Yield the plane that is selected where each section begins, wherever its code stands."""
+    planes, lines = trace.modal.state("plane"), trace.blocks.line_in_file
+    for row in trace.mode.sections.enter.tolist():
+        if planes[row]:
+            name = f"plane G{int(planes[row])}"
+            yield Step(row, int(lines[row]), (name,), (), name)
 
 
 def _moves_outside(trace: Trace) -> Iterator[Step]:

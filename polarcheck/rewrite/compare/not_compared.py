@@ -11,18 +11,15 @@ import numpy as np
 from polarcheck.checking.check import check_runs
 from polarcheck.checking.not_evaluated import bounds_not_reported, unexecuted, unknown_value
 from polarcheck.columns.trace import Trace
-from polarcheck.columns.words.macro_faults import reason_of
 from polarcheck.columns.words.unknown_words import UnknownItem
 from polarcheck.foundation.finding import SEVERITIES, Finding, Severity, each_finding
-from polarcheck.foundation.patterns import lazy_pattern
 from polarcheck.rewrite.compare.comparison_report import NotCompared
 from polarcheck.rewrite.compare.differences import Part
 from polarcheck.rewrite.compare.order_differences import order_differences
 from polarcheck.rewrite.compare.order_meanings import shift_steps
-from polarcheck.rewrite.compare.orders import not_comparable
+from polarcheck.rewrite.compare.orders import not_comparable, statements
 from polarcheck.rewrite.compare.same_words import spans_of
 from polarcheck.rewrite.compare.terms import Terms
-from polarcheck.rewrite.writing.new_blocks import without_comments
 from polarcheck.rules.rule import load_all
 from polarcheck.rules.tables import Tables
 
@@ -30,8 +27,6 @@ from polarcheck.rules.tables import Tables
 Run = tuple[str, Tables]
 #: Rules of warnings with which a control runs what is in no file.
 _RUNS_MORE = ("subprogram-missing",)
-#: A statement by its name, with what is handed to it: `ADIS=0.5`, `ACC[X]=80`, `SOFT`.
-_STATEMENT = lazy_pattern(r"(?<![\w$])([A-Z]\w+)(?:\[[^\]]*\])?(?:\s*=\s*[^\s;]+|\([^)]*\))?")
 #: What stands before the value of a word; nothing before `#2001=`.
 _ADDRESS = re.compile(r"^,?[A-Z]+(?:[0-9]*=)?")
 
@@ -50,10 +45,12 @@ def incomparable(pair: tuple[Tables, Tables], terms: Terms) -> Iterator[NotCompa
         if any(count.any() for count in (written.stray_count, written.wrong_dash_count, written.letter_count)):
             reason = f"{name}: characters that the control cannot read: polarcheck check names them"
             yield NotCompared(reason, matters=not terms.is_kept)
-    if not terms.is_kept:
-        statements = [_passed_over(trace) for trace in traces]
-        for name, of_side, of_rival in zip(("old", "new"), statements, statements[::-1], strict=True):
-            yield from (NotCompared(f"{name}: {reason}") for reason in list(of_side - of_rival)[:1])
+    is_same_machine = traces[0].machine == traces[1].machine
+    if not (is_same_machine or terms.is_kept):
+        # Also those without weight for a check, as Z of an origin, may move metal; on one machine they are orders.
+        of_sides = [Counter(step.text for step in statements(trace)) for trace in traces]
+        for name, of_side, of_rival in zip(("old", "new"), of_sides, of_sides[::-1], strict=True):
+            yield from (NotCompared(f"{name}: {text} is not simulated") for text in list(of_side - of_rival)[:1])
     # In one program alone it is left to the lathe what F means.
     is_open = [
         bool((tables["feeds"].mode_is_unknown & trace.path.moves_at_feed).any())
@@ -63,7 +60,7 @@ def incomparable(pair: tuple[Tables, Tables], terms: Terms) -> Iterator[NotCompa
         reason = f"{'old' if is_open[0] else 'new'}: no code says whether F is per minute or per revolution"
         yield NotCompared(reason, matters=not terms.is_kept)
     yield from _unknown_values(pair, terms)
-    if traces[0].machine != traces[1].machine:
+    if not is_same_machine:
         yield from _of_machines(traces, terms)
 
 
@@ -71,8 +68,11 @@ def added_findings(old: Sequence[Run], new: Sequence[Run]) -> Iterator[NotCompar
     """
     Yield the rules of which a check of one program has more findings than that of the other, errors and warnings.
 
-    With an error a control stops or runs otherwise than written, so that the same moves are not yet the same metal.
+    With an error a control stops or runs otherwise than written, so that the same moves are not yet the same metal. A
+    warning in one alone comes of something that is not compared; where comments differ, it may be what they say.
     """
+    texts = [runs[0][1]["text"] for runs in (old, new)]
+    same_comments = spans_of(texts[0], texts[0].comments) == spans_of(texts[1], texts[1].comments)
     findings = [findings_of(runs, runs[0][1]["job"].severities, Severity.WARNING) for runs in (old, new)]
     counts = [Counter(finding.rule for finding in of_side) for of_side in findings]
     for name, of_side, more in zip(
@@ -80,9 +80,9 @@ def added_findings(old: Sequence[Run], new: Sequence[Run]) -> Iterator[NotCompar
     ):
         for rule in more:
             first = next(finding for finding in of_side if finding.rule == rule)
-            is_error = SEVERITIES[first.severity] >= Severity.ERROR or rule in _RUNS_MORE
+            matters = same_comments or SEVERITIES[first.severity] >= Severity.ERROR or rule in _RUNS_MORE
             reason = f"{name}: a check finds {rule} in line {first.line}, and not in the other: {first.message}"
-            yield NotCompared(reason, matters=is_error)
+            yield NotCompared(reason, matters=matters)
 
 
 def findings_of(
@@ -91,21 +91,6 @@ def findings_of(
     """Return the findings of a check from a severity up, also those that follow from another one."""
     report = check_runs(runs, list(load_all().values()), severities, inline)
     return [finding for finding in each_finding(report.findings) if SEVERITIES[finding.severity] >= lowest]
-
-
-def _passed_over(trace: Trace) -> Counter[str]:
-    """
-    Return the reasons why a program may do more than is simulated, one for each block.
-
-    Also those without weight for a check, as Z of an origin, and statements that change speeds and corners alone.
-    """
-    text, listed = trace.text, trace.machine.macro.statements.items()
-    names = {name.partition("[")[0].rstrip("=") for name, effect in listed if effect == "speeds"}
-    blocks = np.flatnonzero(text.blocks.is_macro).tolist() if names else []
-    matches = (match for block in blocks for match in _STATEMENT.finditer(without_comments(text, block).upper()))
-    statements = ("".join(match[0].split()) for match in matches if match[1] in names)
-    reasons = Counter(f"{statement}: what it does to speeds and corners is not simulated" for statement in statements)
-    return reasons + Counter(reason_of(remark, trace.machine) for remark in trace.run.remarks)
 
 
 def _of_machines(traces: tuple[Trace, Trace], terms: Terms) -> Iterator[NotCompared]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -9,9 +11,12 @@ import numpy as np
 from polarcheck.columns.filling import before, fill_down
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Floats, Mask, Rows
+from polarcheck.foundation.patterns import lazy_pattern
 from polarcheck.foundation.states import MM_PER_INCH, MOVES, STATES, FeedMode, Units
 from polarcheck.program.machines.axis_table import FIRST_NAMED, OF_SPINDLE
 from polarcheck.program.machines.code_tables import code_set
+from polarcheck.program.reading.excerpt import shortened
+from polarcheck.rewrite.writing.new_blocks import without_comments
 from polarcheck.rules.wording.written import executed_word
 
 #: Words of plain moves, and words that only name blocks.
@@ -26,6 +31,12 @@ _OF_STATES = (
     *MOVES.values(),
     *(key for group in ("plane", "side", "units", "feed_mode", "distance") for key in STATES[group]),
 )
+#: A statement by its name, with what is handed to it: `ADIS=0.5`, `ACC[X]=80`, `SOFT`.
+_STATEMENT = lazy_pattern(r"(?<![\w$])([A-Z]\w+)(?:\[[^\]]*\])?(?:\s*=\s*[^\s;]+|\([^)]*\))?")
+#: The number of a block.
+_NUMBER = re.compile(r"^\s*N\d+")
+#: Characters of a statement that is named.
+_LONGEST = 60
 #: M codes that mean the same on every lathe, and whose effect no table of states shows.
 _EVERYWHERE = ("M0", "M1", "M7", "M8", "M9")
 #: M codes that are compared across machines in another way, or that end programs.
@@ -80,7 +91,31 @@ def steps(trace: Trace, *, is_same_machine: bool, with_sides: bool = True) -> li
     with_sides: G40 to G42, D and G12.1 in the mode count, too; False where the path of the tool center shows them.
     """
     reader = _Reader(trace, is_same_machine, with_sides)
-    return list(filter(None, map(reader.step, _rows(trace, is_same_machine).tolist())))
+    in_order = [*filter(None, map(reader.step, _rows(trace, is_same_machine).tolist()))]
+    not_simulated = [*statements(trace)] if is_same_machine else []
+    return sorted([*not_simulated, *in_order], key=lambda step: step.row) if not_simulated else in_order
+
+
+def statements(trace: Trace) -> Iterator[Step]:
+    """
+    Yield the statements that change speeds and corners alone, and the blocks without N that are not simulated.
+
+    Each has the row of the block that runs behind it.
+    """
+    text, listed = trace.text, trace.machine.macro.statements.items()
+    names = {name.partition("[")[0].rstrip("=") for name, effect in listed if effect == "speeds"}
+    unread = {remark.block for remark in trace.run.remarks if remark.kind == "not-simulated"}
+    blocks = sorted(unread.union(np.flatnonzero(text.blocks.is_macro).tolist() if names else ()))
+    if not blocks or not len(trace):
+        return
+    executed, first_row = np.unique(trace.run.block, return_index=True)
+    rows = np.append(first_row, len(trace) - 1)[np.searchsorted(executed, blocks)].tolist()
+    for block, row in zip(blocks, rows, strict=True):
+        content = without_comments(text, block).upper()
+        of_speeds = [match[0] for match in _STATEMENT.finditer(content) if match[1] in names]
+        for written in [_NUMBER.sub("", content)] if block in unread else of_speeds:
+            statement = "".join(written.split())
+            yield Step(row, int(text.blocks.line[block]), (statement,), (), shortened(statement, _LONGEST))
 
 
 def not_comparable(trace: Trace) -> list[str]:

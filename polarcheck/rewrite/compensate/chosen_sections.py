@@ -67,11 +67,21 @@ def _require_sections(trace: Trace) -> None:
 
 
 def _require_sound_switches(trace: Trace) -> None:
-    """Raise RefusedError where G41 or G42 is in force when the mode is switched, or it is switched on twice."""
+    """
+    Raise RefusedError where G41 or G42 is in force when the mode is switched, it is switched on twice or not off, or
+    offsets are set in it.
+    """
     compensation, mode = trace.compensation, trace.mode
     again = np.flatnonzero(mode.enters_again)
     if len(again):
         raise refused_at(trace, int(again[0]), "the polar mode is switched on within itself")
+    left = np.flatnonzero(mode.sections.returned)
+    if len(left):
+        raise refused_at(trace, int(mode.sections.enter[left[0]]), "what leaves the polar mode is not in this program")
+    sets = trace.blocks.listed("data_input") | trace.blocks.assigns(trace.machine.macro.tool_offset_variables)
+    sets_offset = np.flatnonzero(mode.in_polar & sets)
+    if len(sets_offset):
+        raise refused_at(trace, int(sets_offset[0]), "offsets are set in the polar mode: write that before the section")
     side = trace.modal.state("side")
     on = mode.enters & ~compensation.writes_cancel & ((side == Side.LEFT) | (side == Side.RIGHT))
     off = mode.leaves & (compensation.side_of_move_before != Side.OFF)
