@@ -163,10 +163,10 @@ class Engine:
         """Return the first column seen that equals this one bit by bit and is still used, which may be this one."""
         if column.dtype.kind not in "biufc" or not column.flags.c_contiguous:
             return column
-        bits = column.view(f"u{min(column.itemsize, 8)}")
-        key = column.dtype, len(column), int(bits.sum(dtype=np.uint64))
+        bits = column.view(np.uint8)
+        key = column.dtype, len(column), int(bits[: len(bits) // 8 * 8].view(np.uint64).sum())
         first = self._columns.setdefault(key, column)
-        return first if first is column or np.array_equal(first.view(bits.dtype), bits) else column
+        return first if first is column or np.array_equal(first.view(np.uint8), bits) else column
 
     def _give_up(self, rule: Rule, error: TooHardError) -> None:
         self._hits[rule.name] = Hits(np.zeros(0, np.bool_))

@@ -292,9 +292,10 @@ def _unknown_columns(tables: Tables, rule: Rule) -> Iterator[Missing]:
 
 
 def _groups(values: Rows) -> tuple[Rows, Rows]:
-    """Return the first index and the count of each value, by rising value."""
-    first, number = first_of_each(values)
-    return first, np.bincount(number)
+    """Return the first index and the count of each value, by rising value; most stand beside their equals."""
+    begins = np.flatnonzero(np.diff(values, prepend=values[:1] - 1))
+    first, number = first_of_each(values[begins])
+    return begins[first], np.bincount(number, np.diff(np.append(begins, len(values)))).astype(np.int64)
 
 
 def _c_axis_without_limit(tables: Tables, rule: Rule) -> Iterator[Missing]:

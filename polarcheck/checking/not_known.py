@@ -48,7 +48,7 @@ def cause_of(trace: Trace, need: Need, rows: Any) -> Any:
         return trace.tools.offset_number[rows]
     if need == "rate":
         stands_nowhere, has_feed = (
-            np.isnan(trace.path.start + trace.path.end)[rows],
+            np.isnan(trace.path.start[rows] + trace.path.end[rows]),
             ~np.isnan(trace.feedrate.feed[rows]),
         )
         of_feed = np.where(trace.feedrate.per_minute[rows], _NO_FEED, _FEED_OF_SPINDLE)

@@ -16,7 +16,17 @@ from polarcheck.columns.contour.passes import numbered
 from polarcheck.columns.metal.bar import Bar
 from polarcheck.columns.metal.workpiece import Workpiece
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, States, cached_property, column_at, mask_at
+from polarcheck.foundation.arrays import (
+    Columns,
+    Floats,
+    Mask,
+    Rows,
+    States,
+    cached_property,
+    column_at,
+    folded,
+    mask_at,
+)
 from polarcheck.foundation.states import Motion
 from polarcheck.geometry.tolerances import ROUNDING
 
@@ -90,8 +100,7 @@ class AirCuts(Columns, frozen=True):
 
     def _of_section(self, values: Floats, rows: Mask, fold: np.ufunc, none: float) -> Floats:
         """The least or largest of the values of some rows of each section, for each row of the section."""
-        result = np.full(len(self.trace.mode.sections) + 1, none)
-        fold.at(result, self.trace.mode.section[rows], values[rows])
+        result = folded(fold, self.trace.mode.section[rows], values[rows], len(self.trace.mode.sections) + 1, none)
         result[-1] = none
         return np.asarray(result[self.trace.mode.section])
 
@@ -219,9 +228,7 @@ class AirCuts(Columns, frozen=True):
         is_at_entry = self._is_contour & (z <= self._entry + ROUNDING)
         height = np.where(compensates | is_at_entry, z, self._lowest)
         stays = (height >= self._entry - ROUNDING) & (height > _CLEAR)
-        lowest = np.full(len(self.trace.mode.sections) + 1, np.inf)
-        np.minimum.at(lowest, self.trace.mode.section[self.walls], self.trace.path.z[self.walls])
-        below = bool((lowest < -_ABOVE).any()) or self.bar.deepest_turned < -_ABOVE
+        below = bool((self._lowest[self.walls] < -_ABOVE).any()) or self.bar.deepest_turned < -_ABOVE
         return np.asarray(stays & below)
 
     @property

@@ -11,7 +11,7 @@ import numpy as np
 
 from polarcheck.columns.modes.entry import Entry
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, cached_property, column_at
+from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, cached_property, column_at, folded
 from polarcheck.foundation.states import MM_PER_INCH, FeedMode, Units
 from polarcheck.geometry.tolerances import ROUNDING
 
@@ -118,8 +118,8 @@ class ImpliedUnits(Columns, frozen=True):
     def _reach(self) -> Floats:
         """How far from the center the moves of each section go [mm]."""
         trace = self.trace
-        farthest = np.zeros(len(trace.mode.sections) + 1)
-        np.fmax.at(farthest, trace.mode.section, np.where(trace.mode.in_polar, np.abs(trace.path.end), 0.0))
+        distance = np.where(trace.mode.in_polar, np.abs(trace.path.end), 0.0)
+        farthest = folded(np.fmax, trace.mode.section, distance, len(trace.mode.sections) + 1, 0.0)
         return np.asarray(farthest[trace.mode.section])
 
     @cached_property

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Floats, Points, Rows
+from polarcheck.foundation.arrays import Floats, Points, Rows, folded
 
 #: Nobody means a coarser digit than this many least increments: X20. is 20, and no number between 19.5 and 20.5.
 _COARSEST = 10
@@ -36,8 +36,7 @@ def _last_digit(trace: Trace, words: Rows) -> Floats:
     """Of these words the finest digit in each section, per row."""
     section = trace.mode.section[trace.run.row[words]]
     own = trace.run.words.decimals[words]
-    decimals = np.zeros(len(trace.mode.sections) + 1, own.dtype)
-    np.maximum.at(decimals, section, np.where(section >= 0, own, 0))
+    decimals = folded(np.maximum, section, np.where(section >= 0, own, 0), len(trace.mode.sections) + 1, 0)
     finest, least = 10.0**-decimals, trace.lengths.least_increment
     is_written = (decimals > 0)[trace.mode.section]
     return np.where(is_written, np.minimum(finest[trace.mode.section], _COARSEST * least), least)
