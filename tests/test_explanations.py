@@ -317,3 +317,36 @@ def test_a_point_is_told_where_the_shape_shows_it(contour: list[str], right: str
     assert sound == []
     assert len(found) == 1
     assert all(part in found[0].message for part in words)
+
+
+#: A pentagon of 30 across flats in distances.
+PENTAGON = ["U0. H-21.796", "U-41.459 H-6.736", "U-25.623 H17.634", "U25.623 H17.634", "U41.459 H-6.736"]
+
+
+@looped("missing", [(line, word) for line in PENTAGON[1:] for word in line.split()])
+def test_a_distance_that_is_missing_is_the_one_that_closes_the_contour(missing: tuple[str, str]) -> None:
+    line, word = missing
+    rest = line.replace(word, "").strip()
+    text = program(["G41 X30. C10.898 F150", *PENTAGON]).replace(line, rest)
+    (finding,) = report_of(text, "fanuc-30i", "1:radius=5").findings
+    assert (text.splitlines()[finding.line - 1], finding.values["word_needed"]) == (rest, word)
+
+
+@looped("ends", [("C8.", "C-8."), ("C8.", "C-2."), ("C4.", "C3."), ("C8.", "C0"), ("C0", "C-8.")])
+def test_leads_along_a_side_belong_to_no_contour(ends: tuple[str, str]) -> None:
+    begins, leaves = ends
+    sides = ["G1 C-6.", "G2 X34. C-9. R3.", "G1 X-34.", "G2 X-40. C-6. R3.", "G1 C6.", "G2 X-34. C9. R3."]
+    sound = [f"G41 X40. {begins} F200", *sides, "G1 X34.", "G2 X40. C6. R3.", f"G1 {leaves}"]
+    assert report_of(program(sound), "fanuc-30i", "1:radius=4").findings == []
+
+
+@looped("code", ["CR=20", "CR=110", "CR=100"])
+def test_an_end_of_a_slot_is_told_where_the_contour_begins_with_its_arc(code: str) -> None:
+    moves = ["G41 X8 Y10 F180", "G2 X8 Y-10 CR=10", "G1 X-8", "G2 X-8 Y10 CR=10", "G1 X9", "G40 X30 Y22", "G0 Z2"]
+    head = ["G18 G90 G71 G94 G40 DIAMON", "T5 D1", "SETMS(2) S2=2500 M2=3", "G0 X90 Z2", "TRANSMIT", "DIAMOF", "G17"]
+    lines = [*head, "G0 X30 Y22", "G1 Z-4 F400", *moves, "TRAFOOF", "M30"]
+    for line in (lines.index(moves[1]), lines.index(moves[3])):
+        text = "\n".join([*lines[:line], lines[line].replace("CR=10", code), *lines[line + 1 :]]) + "\n"
+        findings = report_of(text, "siemens-transmit", "T5:radius=5,nose=0").findings
+        told = [(finding.rule, finding.line) for finding in findings if finding.severity != "note"]
+        assert told == [("arc-not-tangent", line + 1)]

@@ -79,8 +79,14 @@ def _of_axis(trace: Trace, loop: WrittenLoop, number: int) -> Iterator[Edit]:
     axis, other = loop.axes[number], loop.axes[1 - number]
     sizes, on_circle = _sizes(axis.value[~axis.is_step]), _on_circles(trace, loop, number)
     gap = _gap(loop, number)
+    is_open = abs(gap) > 2 * loop.tolerance
     for corner, word in enumerate(axis.word.tolist()):
         if word < 0:
+            if is_open and corner and other.is_step[corner] and other.word[corner] >= 0:
+                is_letter = _parts(trace, int(other.word[corner]))[0].strip("=") == other.step_address.strip("=")
+                value = _rounded(gap / float(axis.scale[corner]), axis, other)
+                text = f"{axis.step_address if is_letter else axis.address}{plain_number(value)}"
+                yield Edit("missing", corner, (), text, "a word is missing", _OF_BLOCK, number, value)
             values = dict.fromkeys(signed for size in (0.0, *sizes) for signed in (size, -size))
             for value in (*values, *on_circle.get(corner, ())) if corner else ():
                 text = f"{axis.address}{plain_number(value)}"
@@ -95,9 +101,8 @@ def _of_axis(trace: Trace, loop: WrittenLoop, number: int) -> Iterator[Edit]:
         is_angle = number == 1 and _looks_like_angle(loop, corner)
         for slip, cost in _numbers(written, float(axis.value[corner]), others, beside, is_angle=is_angle):
             yield Edit("word", corner, (word,), address + slip.text, slip.kind, cost, number, float(slip.text))
-        if axis.is_step[corner] and corner and abs(gap) > 2 * loop.tolerance:
-            value = float(axis.value[corner]) + gap / float(axis.scale[corner])
-            value = round(value, max(_decimals(plain_number(size)) for size in axis.value[~np.isnan(axis.value)]))
+        if axis.is_step[corner] and corner and is_open:
+            value = _rounded(float(axis.value[corner]) + gap / float(axis.scale[corner]), axis)
             text = address + plain_number(value)
             yield Edit("word", corner, (word,), text, "another number is meant", _SELDOM, number, value)
         if other.word[corner] < 0:
@@ -110,6 +115,12 @@ def _of_axis(trace: Trace, loop: WrittenLoop, number: int) -> Iterator[Edit]:
             text = f"{address}{parts[1]} {parts[0]}{written}"
             why = f"the numbers of {address.strip('=')} and {parts[0].strip('=')} are exchanged"
             yield Edit("exchanged", corner, words, text, why, 0.0)
+
+
+def _rounded(value: float, *axes: AxisWords) -> float:
+    """A number with as many decimals as those of some axes."""
+    numbers = np.concatenate([axis.value[~np.isnan(axis.value)] for axis in axes])
+    return round(value, max(_decimals(plain_number(number)) for number in numbers.tolist()))
 
 
 def _gap(loop: WrittenLoop, number: int) -> float:
@@ -262,9 +273,9 @@ def with_edit(loop: WrittenLoop, edit: Edit) -> WrittenLoop:
 
 def _changed(loop: WrittenLoop, edits: list[Edit]) -> tuple[list[Floats], list[Mask], Rows, Floats, Points]:
     """Numbers of both axes, whether they are steps, turns, R and centers: as they are written, and with each edit."""
-    count = len(edits) + 1
-    values = [np.repeat(axis.value[None], count, 0) for axis in loop.axes]
-    steps = [np.repeat(axis.is_step[None], count, 0) for axis in loop.axes]
+    count, axes = len(edits) + 1, loop.axes
+    values = [np.repeat(axis.value[None], count, 0) for axis in axes]
+    steps = [np.repeat(axis.is_step[None], count, 0) for axis in axes]
     turns, radius = np.repeat(loop.turns[None], count, 0), np.repeat(loop.radius[None], count, 0)
     to_center = np.repeat(loop.to_center[None], count, 0)
     for number, edit in enumerate(edits, 1):
@@ -272,6 +283,7 @@ def _changed(loop: WrittenLoop, edits: list[Edit]) -> tuple[list[Floats], list[M
         match edit.kind:
             case "word" | "missing":
                 values[edit.axis][at] = edit.value
+                steps[edit.axis][at] |= edit.kind == "missing" and edit.text.startswith(axes[edit.axis].step_address)
             case "letter":
                 values[1 - edit.axis][at], values[edit.axis][at] = values[edit.axis][at], np.nan
                 steps[1 - edit.axis][at] = steps[edit.axis][at]

@@ -121,7 +121,11 @@ class Passes(Columns, frozen=True):
 
     @cached_property
     def ring(self) -> tuple[Rows, Rows]:
-        """Per pass the first and the last move of the ring that it closes; -1 where it closes none."""
+        """
+        Per pass the first and the last move of the ring that it closes; -1 where it closes none.
+
+        A last line that runs on past the start of the first move, or begins before the end of that, closes it, too.
+        """
         first, last = self.first, self.last
         if not len(first):
             return first, last
@@ -131,10 +135,20 @@ class Passes(Columns, frozen=True):
         begin, end = np.minimum(begin, last[:, None]), np.maximum(end, first[:, None])
         is_pair &= (end > begin) | self.is_arc[begin]
         closes = is_pair & (np.abs(self.start[begin] - self.end[end]) <= _CLOSED)
+        closes |= ~closes.any(axis=1)[:, None] & is_pair & (self._joins(begin, end) | self._joins(end, begin))
         length = np.where(closes, end - begin, -1)
         best, rows = np.argmax(length, axis=1), np.arange(len(first))
         closed = length[rows, best] >= 0
         return np.where(closed, begin[rows, best], -1), np.where(closed, end[rows, best], -1)
+
+    def _joins(self, line: Rows, other: Rows) -> Mask:
+        """Lines on which the other move begins, if it comes before, or ends."""
+        point = np.where(line > other, self.start[other], self.end[other])
+        way = self.end[line] - self.start[line]
+        length = np.maximum(np.abs(way), _CLOSED)
+        off = (point - self.start[line]) * way.conj() / length
+        is_on = (np.abs(off.imag) <= _CLOSED) & (off.real > 0) & (off.real < length)
+        return np.asarray(is_on & ~self.is_arc[line])
 
     @cached_property
     def closed(self) -> Mask:

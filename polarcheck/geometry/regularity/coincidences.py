@@ -117,12 +117,12 @@ def chances_of(outlines: Outlines, tolerance: float) -> Chances:
 
 
 def _overlaps(point: Points, turns: Rows, tolerance: float) -> Mask:
-    """The outline ends on its first line, or begins on its last one."""
+    """The first or the last line of the outline has an end of the other one on it."""
     overlaps = np.zeros(len(point), bool)
-    for place, begin, end, turn in ((-1, 0, 1, 0), (0, -2, -1, -1)):
+    for place, begin, end, turn in ((-1, 0, 1, 0), (-2, 0, 1, 0), (0, -2, -1, -1), (1, -2, -1, -1)):
         way = np.abs(point[:, place] - point[:, begin]) + np.abs(point[:, end] - point[:, place])
         is_on = way - np.abs(point[:, end] - point[:, begin]) <= tolerance
-        overlaps |= is_on & (turns[:, turn] == 0) & (point.shape[1] > _FEWEST)
+        overlaps |= is_on & (turns[:, turn] == 0) & (point.shape[1] > _FEWEST + (place in (-2, 1)))
     return overlaps
 
 

@@ -88,8 +88,15 @@ def _crossed(point: Points, bulge: Floats) -> Ring | None:
 
 
 def _overlapping(point: Points, bulge: Floats) -> Iterator[Ring]:
-    """Rings of paths that begin within a side and end beyond that point of it."""
+    """Rings of paths that begin within a side and end beyond that point of it, or come again to their first line."""
     for first in range(min(_LEADS, len(bulge) - _FEWEST)):
+        line, away = point[first + 1] - point[first], point[first + _FEWEST :] - point[first]
+        along, aside = (part(away * line.conjugate()) / abs(line) for part in (np.real, np.imag))
+        again = (np.abs(aside) <= _SAME) & (along > 0) & (along < abs(line)) & (bulge[first] == 0)
+        if again.any():
+            last = first + _FEWEST + int(np.argmax(again))
+            yield _simplified(np.append(point[last], point[first + 1 : last]), np.append(0.0, bulge[first + 1 : last]))
+            return
         start, end = point[first + 2 : -1], point[first + 3 :]
         vector = end - start
         along = ((point[first] - start) * vector.conj()).real / np.abs(vector) ** 2
