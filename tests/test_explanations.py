@@ -350,3 +350,25 @@ def test_an_end_of_a_slot_is_told_where_the_contour_begins_with_its_arc(code: st
         findings = report_of(text, "siemens-transmit", "T5:radius=5,nose=0").findings
         told = [(finding.rule, finding.line) for finding in findings if finding.severity != "note"]
         assert told == [("arc-not-tangent", line + 1)]
+
+
+FLATS = ["G42 X24. C-30. F250", "C30.", "G40 X80. C34.", "Z2. F2000", "X-80. C34.", "Z-8. F800"]
+FLATS += ["G42 X-24. C30. F250", "C-30.", "G40 X-80. C-34."]
+
+
+@looped("line", [0, 6])
+def test_a_start_up_is_missing_where_the_way_out_mirrors_another_one(line: int) -> None:
+    lines = [*HEAD[:-2], "G1 X80. C-34. F2000", "Z-8. F800", *FLATS, *TAIL[1:]]
+    assert report_of("\n".join(lines) + "\n", "fanuc-30i", "1:radius=8").findings == []
+    wrong = "\n".join(text.replace("G42 ", "") if text == FLATS[line] else text for text in lines) + "\n"
+    (finding,) = report_of(wrong, "fanuc-30i", "1:radius=8").findings
+    assert (finding.rule, wrong.splitlines()[finding.line - 1]) == ("cancel-without-start-up", FLATS[line + 2])
+
+
+def test_a_number_as_another_block_has_it_is_meant_and_none_that_is_nearly_that() -> None:
+    sides = ["C8.66", "G3 X2.5 C12.99 R5.", "G1 X-12.5 C4.33", "G3 X-12.5 C-4.33 R5.", "G1 X2.5 C-12.99"]
+    moves = ["G42 X10. C0 F150", *sides, "G3 X10. C-8.66 R5.", "G1 C0", "G40 X40.", "Z2.", "G13.1", "M30"]
+    text = "\n".join(["O1", "T0101", "G90 G94 G0 X40. Z2. C0", "G12.1", "G1 Z-4. F300", *moves]) + "\n"
+    assert report_of(text, "mitsubishi-m700", "1:radius=5").findings == []
+    (finding,) = report_of(text.replace("C8.66", "C8.56", 1), "mitsubishi-m700", "1:radius=5").findings
+    assert "a digit is wrong: with C8.66" in finding.message

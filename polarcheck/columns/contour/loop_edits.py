@@ -20,8 +20,8 @@ _LEAST, _GREATEST = 0.02, 2000.0
 _SAME_NUMBER, _STEPS = 5e-5, 1.5
 #: By how much an edit is less likely, as a number of coordinates that are as they are by chance: a slip that is seldom
 #: made, a number of another block, a word or block that is missing or too many, another sense, a number with more
-#: decimals than what is written, and one of a block that is not beside it.
-_SELDOM, _ELSEWHERE, _OF_BLOCK, _SAME_SIZE, _FINER, _FAR = 0.3, 0.2, 0.4, 0.1, 0.6, 2.5
+#: decimals than what is written, one of a block that is not beside it, and one that is nearly that of another block.
+_SELDOM, _ELSEWHERE, _OF_BLOCK, _SAME_SIZE, _FINER, _FAR, _NEARLY = 0.3, 0.2, 0.4, 0.1, 0.6, 2.5, 0.4
 
 #: An angle in degrees is a multiple of this, from twice as much on; what is said of one.
 _PART_OF_TURN, _FULL_TURN = 15.0, 360.0
@@ -222,7 +222,7 @@ def _numbers(
     # A number that one slip writes exactly is none that another one writes but for rounding.
     inexact = tuple(size for size in others if _key(size) not in exact and _key(-size) not in exact)
     likely = (slip._replace(text=_of_others(float(slip.text), slip.text, inexact, step)) for slip in of_pen)
-    slips = [(slip, _cost(slip, written, others)) for slip in likely]
+    slips = [(slip, _cost(slip, written, others, step)) for slip in likely]
     for size in others:
         cost = _SELDOM if is_beside or is_angle else _FAR
         slips += [(of_others._replace(text=plain_number(number)), cost) for number in (size, -size)]
@@ -245,10 +245,12 @@ def _of_others(value: float, text: str, others: tuple[float, ...], step: float) 
     return plain_number(float(np.copysign(near[0], value))) if near else text
 
 
-def _cost(slip: Slip, written: str, others: tuple[float, ...]) -> float:
-    is_other = any(abs(abs(float(slip.text)) - size) < _SAME_NUMBER for size in others)
-    is_finer = _decimals(slip.text) > _decimals(written)
-    return (not slip.is_common) * _SELDOM + (not (slip.plain or is_other)) * _ELSEWHERE + is_finer * _FINER
+def _cost(slip: Slip, written: str, others: tuple[float, ...], step: float) -> float:
+    apart = min((abs(abs(float(slip.text)) - size) for size in others), default=np.inf)
+    is_other = apart < _SAME_NUMBER
+    is_finer, is_nearly_other = _decimals(slip.text) > _decimals(written), not is_other and apart <= step
+    cost = (not slip.is_common) * _SELDOM + (not (slip.plain or is_other)) * _ELSEWHERE
+    return cost + is_finer * _FINER + is_nearly_other * _NEARLY
 
 
 def _decimals(number: str) -> int:

@@ -103,8 +103,8 @@ class MisplacedRamps(Columns, frozen=True):
         if bool(np.any(trace.compensation.starts_up & (trace.mode.section != trace.mode.section[row]))):
             return True
         leaves_from, leaves_to = trace.path.start[row], trace.path.end[row]
-        apart = np.abs(trace.path.start - leaves_from) + np.abs(trace.path.end - leaves_to)
-        if bool(np.any(trace.compensation.cancels & (apart <= _SAME))):
+        likes = _mirrors(trace.path.start, leaves_from) & _mirrors(trace.path.end, leaves_to)
+        if bool(np.any(trace.compensation.cancels & likes)):
             return True
         before_end = np.append(moves.start[first : first + 1], moves.end[first : last - 1])
         closes = bool(np.any(np.abs(before_end - leaves_from) <= _SAME))
@@ -265,9 +265,11 @@ def _is_on(path: PlanePath, move: int, point: complex) -> bool:
     return bool(abs(point - start) + abs(point - end) - abs(end - start) <= _SAME)
 
 
-def _mirrors(first: complex, second: complex) -> bool:
+def _mirrors(first: Points | complex, second: complex) -> Mask:
     """The points are the same, or mirror images about an axis of the plane or the center."""
-    return abs(abs(first.real) - abs(second.real)) <= _SAME and abs(abs(first.imag) - abs(second.imag)) <= _SAME
+    point = np.asarray(first)
+    along_x, along_c = np.abs(point.real) - abs(second.real), np.abs(point.imag) - abs(second.imag)
+    return np.asarray((np.abs(along_x) <= _SAME) & (np.abs(along_c) <= _SAME))
 
 
 def _across_flats(ends: Points) -> float:
