@@ -72,3 +72,26 @@ def test_a_pocket_at_another_depth_by_a_slip_of_the_pen_is_told(depths: list[str
 @pytest.mark.parametrize("depths", [["-3.", "-4.", "-3.", "-3."], ["-3.", "-6.", "-6.", "-3."]])
 def test_a_pocket_may_be_deeper(depths: list[str]) -> None:
     assert told(pockets(["G3 I-6."] * 4).replace("G1 Z-3.", "G1 Z{}").format(*depths)) == []
+
+
+GROOVE = ["G3 I-12.5 J0", "G3 I-12.5 J0", "G3 I-12.5 J0"]
+
+
+def groove(circles: list[str]) -> str:
+    """A groove on the face by a circle at each depth."""
+    cuts = "".join(f"G1 Z-{depth}. F40\n{circle} F120\n" for depth, circle in enumerate(circles, 1))
+    head = "O1\nG21 G98 G40\nT0808\nG97 S3000 M13\nG28 H0\nG0 X25. C0 Z2.\nG12.1\n"
+    return f"{head}{cuts}G1 Z2. F800\nG13.1\nG0 X100. Z50.\nM5\nM30\n"
+
+
+@pytest.mark.parametrize("which", range(3))
+@pytest.mark.parametrize("odd", ["G3 I-12.4 J0", "G3 I-15.2 J0", "G3 I12.5 J0", "G3 I-125. J0"])
+def test_a_circle_unlike_those_at_other_depths_is_told(which: int, odd: str) -> None:
+    circles = [*GROOVE]
+    circles[which] = odd
+    assert told(groove(circles)) == [("circle-center-doubled", f"{odd} F120")]
+
+
+@pytest.mark.parametrize("circles", [GROOVE, ["G3 I-12.5", "G3 I-10."], ["G3 I-8.", "G3 I-10.", "G3 I-12.5"]])
+def test_circles_at_several_depths_that_are_meant_are_told_nothing(circles: list[str]) -> None:
+    assert told(groove(circles)) == []

@@ -16,6 +16,8 @@ from polarcheck.geometry.tolerances import ROUNDING
 _SAME = 2e-3
 #: I and J that may be meant, as shares of those that are written.
 _SHARES = (0.5, 2.0)
+#: Circles at other depths that say where the center of one is.
+_LEAST_LIKES = 2
 #: More circles than these are compared with nothing.
 _MOST = 2000
 
@@ -108,7 +110,9 @@ class FullCircles(Columns, frozen=True):
                     intended[int(self.row[index])] = Intended(share, point, -1)
                 elif abs(point - origin[index]) <= _SAME and len(likes):
                     intended[int(self.row[index])] = Intended(share, point, int(self.row[likes[0]]))
-            if int(self.row[index]) not in intended and (found := self._round_origin(index, is_round_origin)):
+            if int(self.row[index]) not in intended and (
+                found := self._round_origin(index, is_round_origin) or self._at_other_depths(index)
+            ):
                 intended[int(self.row[index])] = found
         return intended
 
@@ -129,6 +133,23 @@ class FullCircles(Columns, frozen=True):
             if not (slip is not None and slip.plain) and abs(share + 1) * reach > _SAME:
                 return None
         return Intended(share.real, origin, int(self.row[likes[0]]))
+
+    def _at_other_depths(self, index: int) -> Intended | None:
+        """The circle that others of the tool are, from the same point at other depths, all round one center."""
+        trace, start, center = self.trace, self._start, self.trace.path.center[self.row]
+        z, call = trace.path.z[self.row], trace.tools.tool_called[self.row]
+        likes = np.flatnonzero((np.abs(start - start[index]) <= _SAME) & (call == call[index]))
+        likes = likes[likes != index]
+        if len(likes) < _LEAST_LIKES or np.abs(center[likes] - center[likes[0]]).max() > _SAME:
+            return None
+        share = complex((center[likes[0]] - start[index]) / (center[index] - start[index]))
+        is_elsewhere = abs(center[likes[0]] - center[index]) > _SAME and np.abs(z[likes] - z[index]).min() > ROUNDING
+        is_along = abs(share.imag) * abs(center[index] - start[index]) <= _SAME
+        return (
+            Intended(share.real, complex(center[likes[0]]), int(self.row[likes[0]]))
+            if is_elsewhere and is_along
+            else None
+        )
 
     @cached_property
     def is_misplaced(self) -> Mask:

@@ -30,7 +30,8 @@ def circle_center_doubled(full_circles: FullCircles) -> Mask:
     C, and the tool comes from inside the circle, or would go farther out than it has come from, or other circles are
     round the center of C; or to the point from which the tool comes and to which it goes back, as other circles of the
     tool have it. Where two others are as far from such a point, or one is and a slip of the pen explains I or J, they
-    may be any others.
+    may be any others; so may they where two circles or more that begin at the same point at other depths are round
+    another center.
 
     Source: FANUC B-62764EN/01, p. 51 (I and J in the polar plane).
 
