@@ -7,7 +7,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from polarcheck.foundation.arrays import computed, different, first_of_each, is_among, is_uniform, repeated
+from polarcheck.foundation.arrays import computed, different, first_of_each, is_among, is_uniform, median, repeated
 
 NUMBERS = st.lists(st.one_of(st.integers(-5, 5).map(float), st.floats(allow_nan=False)), max_size=9)
 
@@ -29,6 +29,12 @@ def test_the_first_of_each_value_is_that_of_numpy(values: list[float]) -> None:
 @given(st.one_of(NUMBERS, st.lists(st.just(float("nan")), max_size=2)), NUMBERS)
 def test_values_among_others_are_those_of_numpy(values: list[float], wanted: list[float]) -> None:
     assert is_among(np.array(values), wanted).tolist() == np.isin(values, wanted).tolist()
+
+
+@given(st.lists(st.floats(-1e9, 1e9) | st.just(np.nan), min_size=1))
+def test_the_median_is_that_of_numpy(values: list[float]) -> None:
+    expected = float(np.median(np.array(values)))
+    assert median(np.array(values)) == pytest.approx(expected, rel=0, abs=0, nan_ok=True)
 
 
 def test_texts_are_found_whatever_their_lengths() -> None:

@@ -150,7 +150,14 @@ def folded(fold: np.ufunc, group: Rows, values: NDArray[_Number], count: int, no
     return result
 
 
-# np.unique and, for some arguments, np.isin import numpy.ma, 10 % of the time of a small check.
+# np.unique, np.median and, for some arguments, np.isin import numpy.ma, 5 to 10 % of the time of a small check.
+
+
+def median(values: NDArray[Any]) -> float:
+    """Return the median of numbers; NaN if one of them is NaN."""
+    rising = np.sort(values)  # NaN is last
+    middle = rising[[(len(rising) - 1) // 2, len(rising) // 2]]
+    return float(rising[-1] if rising[-1] != rising[-1] else middle.sum() / 2)
 
 
 def side_by_side(*columns: NDArray[Any]) -> Iterator[tuple[Any, ...]]:

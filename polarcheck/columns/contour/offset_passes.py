@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from polarcheck.columns.contour.passes import Passes
-from polarcheck.foundation.arrays import Floats, Mask, Points, different, first_of_each
+from polarcheck.foundation.arrays import Floats, Mask, Points, different, first_of_each, median
 
 #: Points are at the distance of the others within this, and one is not from this on [mm]. Largest distance of a finish.
 _ALIKE, _ODD, _MOST = 0.012, 0.05, 2.0
@@ -100,7 +100,7 @@ def _expected(
     kind, distance = np.concatenate(kinds), np.concatenate([(apart * wall.conj()).real for wall in walls])
     usual = np.zeros(len(kind))
     for value in different(kind).tolist():
-        usual[kind == value] = np.median(distance[kind == value])
+        usual[kind == value] = median(distance[kind == value])
     if usual.min() * usual.max() <= 0 or not _ODD < np.abs(usual).max() <= min(_MOST, _UNEVEN * np.abs(usual).min()):
         return None
     first, second = np.split(usual, 2)

@@ -7,7 +7,17 @@ import numpy as np
 from polarcheck.columns.contour.passes import numbered
 from polarcheck.columns.metal.air_cuts import AirCuts, row_of_infeed
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, Table, cached_property, different, first_of_each
+from polarcheck.foundation.arrays import (
+    Columns,
+    Floats,
+    Mask,
+    Rows,
+    Table,
+    cached_property,
+    different,
+    first_of_each,
+    median,
+)
 from polarcheck.geometry.tolerances import ROUNDING
 
 #: A step is far off the others if it is as many times as large.
@@ -145,7 +155,7 @@ class PassDepths(Columns, frozen=True):
         rows = [(group.row, group.z) for group in groups] + self._alike
         found: dict[int, float] = {}
         for row, z in rows:
-            usual = float(np.median(z))
+            usual = median(z)
             off = np.flatnonzero(np.abs(z - usual) > ROUNDING)
             if len(off) == 1:
                 scale = float(self.trace.lengths.scale[row[off[0]]])

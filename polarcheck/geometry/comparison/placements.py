@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from polarcheck.foundation.arrays import Floats, Points
+from polarcheck.foundation.arrays import Floats, Points, median
 from polarcheck.foundation.states import MM_PER_INCH
 from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.comparison.alignment import best_turn
@@ -295,7 +295,7 @@ def _arc_centers(path: MeasuredPath) -> list[complex]:
     while len(centers) and len(main_centers) < _CENTERS:
         near = np.abs(centers[:, None] - centers) <= _SAME_CENTER * radius
         longest = int((near * lengths).sum(axis=1).argmax())
-        main_centers.append(complex(np.median(centers[near[longest]].real), np.median(centers[near[longest]].imag)))
+        main_centers.append(complex(median(centers[near[longest]].real), median(centers[near[longest]].imag)))
         remaining = ~near[longest]
         centers, radius, lengths = centers[remaining], radius[remaining], lengths[remaining]
     return main_centers

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 
-from polarcheck.foundation.arrays import Floats, Points, Rows
+from polarcheck.foundation.arrays import Floats, Points, Rows, median
 from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.outline import Outline
 from polarcheck.geometry.polygons.faces import coordinates
@@ -109,12 +109,12 @@ def likeness(samples: Samples, outline: Outline, standing: Standing) -> Likeness
         offset = beyond(samples.point * np.exp(1j * turn), standing)
         order = np.argsort(offset)
         half = np.searchsorted(np.cumsum(samples.weight[order]), samples.weight.sum() / 2)
-        median = float(offset[order][half])
-        even = max(_EVEN, min(_AT_CORNERS * abs(median), _MOST_AT_CORNERS))
-        if samples.weight[np.abs(offset - median) <= even].sum() >= _ALIKE * samples.weight.sum():
+        middle = float(offset[order][half])
+        even = max(_EVEN, min(_AT_CORNERS * abs(middle), _MOST_AT_CORNERS))
+        if samples.weight[np.abs(offset - middle) <= even].sum() >= _ALIKE * samples.weight.sum():
             turns.append(turn)
-            offsets.append(median)
-    return Likeness(np.array(turns), float(np.median(offsets))) if turns else None
+            offsets.append(middle)
+    return Likeness(np.array(turns), median(np.array(offsets))) if turns else None
 
 
 def _candidates(outline: Outline, other: Outline) -> Floats:

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from polarcheck.foundation.arrays import Floats, Mask, Points
+from polarcheck.foundation.arrays import Floats, Mask, Points, median
 from polarcheck.geometry.shapes.corners import Sides, is_at, without_chamfers
 from polarcheck.geometry.shapes.shape import SAME, SAME_DIRECTION, OddSide, Shape, off_axis, polygon_name, turned_by
 from polarcheck.geometry.shapes.side_rings import Ring, extents_of
@@ -91,7 +91,7 @@ def _fitted(sides: Sides) -> _Fit | None:
     if np.ptp(first) > max(0.03, float(4 * SAME / length.min())):
         return None
     best = None
-    middle = float(np.median(first))
+    middle = median(first)
     everything = np.ones(count, bool)
     attempts = [(everything, False), (everything, True)]
     if count > 4:
@@ -119,7 +119,7 @@ def _laid(sides: Sides, first: float, chosen: Mask, on_axis: bool) -> _Fit:
     normal: Points = np.exp(1j * (first + 2 * np.pi * np.arange(count) / count))
     out = (sides.middle * normal.conj()).real
     if on_axis:
-        center, distance = 0j, float(np.median(out[chosen]))
+        center, distance = 0j, median(out[chosen])
         agree = chosen & is_at(out, distance)
         distance = float(out[agree].mean()) if agree.any() else distance
     else:
