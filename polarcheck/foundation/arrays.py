@@ -95,9 +95,14 @@ def is_uniform(values: NDArray[Any]) -> bool:
     return bool(first != first and last != last and (values != values).all())
 
 
+def is_repeated(column: NDArray[Any]) -> bool:
+    """Return True if a column, which is not empty, is one value that `repeated` gives to each row."""
+    return column.strides == (0,) and len(column) > 0
+
+
 def computed(function: Callable[..., NDArray[_Number]], *columns: NDArray[Any]) -> NDArray[_Number]:
     """Apply a function to columns row by row; only once if all of them are `repeated`."""
-    if all(column.strides == (0,) for column in columns) and len(columns[0]):
+    if all(map(is_repeated, columns)):
         return repeated(function(*(column[:1] for column in columns))[0], len(columns[0]))
     return function(*columns)
 

@@ -11,7 +11,7 @@ from polarcheck.columns.modes.modal import ModalStates
 from polarcheck.columns.modes.mode import PolarMode
 from polarcheck.columns.path.axes import PlaneAxes
 from polarcheck.columns.path.coordinates import Coordinates
-from polarcheck.foundation.arrays import Floats, States, cached_property, computed
+from polarcheck.foundation.arrays import Floats, States, cached_property, computed, is_repeated
 from polarcheck.foundation.states import MM_PER_INCH, Units
 from polarcheck.program.execution.run import Run
 from polarcheck.program.machines.code_lists import numbers
@@ -103,7 +103,7 @@ class Lengths(Lookups, frozen=True):
     @cached_property
     def _lengths(self) -> Floats:
         least = self.least_increment
-        return self.coordinates.meant(least[0] if least.strides == (0,) else least[self.run.row])
+        return self.coordinates.meant(least[0] if is_repeated(least) else least[self.run.row])
 
     def length_of(self, address: str) -> Floats:
         """A word as a length [mm], as written: a diameter stays one."""
@@ -114,7 +114,7 @@ class Lengths(Lookups, frozen=True):
             lengths = self.blocks.word(address)
         else:
             lengths = self.blocks.in_rows(address, self._lengths)
-        is_in_mm = self.scale.strides == (0,) and self.scale[0] == 1.0
+        is_in_mm = is_repeated(self.scale) and self.scale[0] == 1.0
         return lengths if is_in_mm or not len(self.blocks.word_indices(address)) else lengths * self.scale
 
     @cached_property
