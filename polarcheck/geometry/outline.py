@@ -19,7 +19,7 @@ from polarcheck.geometry.tolerances import CORNER
 _MOST_OPEN = 100
 
 
-class Outline(PlanePath, frozen=True):
+class Outline(PlanePath, frozen=True, dict=True):
     """
     Lines and arcs with the part on their left: an arc that runs counterclockwise bulges outward.
 

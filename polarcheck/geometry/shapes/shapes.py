@@ -20,11 +20,14 @@ from polarcheck.geometry.shapes.side_rings import SHARP, Ring, directions, exten
 
 def shapes_of(outline: Outline, gap: float = 0.0, bar: float = np.nan) -> list[Shape]:
     """
-    What an outline is, a shape for each boss and each pocket, open ones first.
+    What an outline is, a shape for each boss and each pocket, open ones first; found once for each outline.
 
     gap: what of it was closed by a straight line [mm]. bar: diameter [mm], NaN if not known.
     """
-    return shapes_of_rings(rings(outline, gap, bar), bar)
+    found, key = vars(outline), f"shapes {gap} {bar}"
+    if key not in found:
+        found[key] = shapes_of_rings(rings(outline, gap, bar), bar)
+    return [*found[key]]
 
 
 def shapes_of_rings(rings: Iterable[Ring], bar: float = np.nan) -> list[Shape]:
