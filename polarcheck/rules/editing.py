@@ -102,11 +102,14 @@ def line_end(source: Source, line: int) -> str:
 
 def content_of(text: Text, block: int) -> tuple[int, int]:
     """The characters of a block without the blanks and line ends around it."""
-    blocks = text.blocks
-    start, end = int(blocks.start[block]), int(blocks.end[block])
-    content = text.source.excerpt(start, end)
-    stripped = content.lstrip(_BLANK_OR_END)
-    return end - len(stripped) if stripped else start, start + len(content.rstrip(_BLANK_OR_END)) if stripped else start
+    return without_blanks(text.written(text.blocks, block), int(text.blocks.start[block]))
+
+
+def without_blanks(content: str, start: int) -> tuple[int, int]:
+    """The characters of a content that begins with `start`, without the blanks and line ends around it."""
+    stripped = content.rstrip(_BLANK_OR_END)
+    end = start + len(stripped)
+    return end - len(stripped.lstrip(_BLANK_OR_END)) if stripped else start, end
 
 
 def _ends_with_sign(text: Text, block: int) -> bool:

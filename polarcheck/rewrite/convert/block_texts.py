@@ -88,8 +88,12 @@ class BlockTexts:
     def ends(self) -> tuple[int, int]:
         """The first and the last block that is not empty."""
         blocks = self.text.blocks
-        filled = [block for block in range(len(blocks)) if self.text.written(blocks, block).strip()]
-        return (filled[0], filled[-1]) if filled else (0, len(blocks) - 1)
+        number = range(len(blocks))
+        first, last = (
+            next((block for block in order if self.text.written(blocks, block).strip()), order[0])
+            for order in (number, number[::-1])
+        )
+        return first, last
 
     def first_block(self, row: int) -> int | None:
         """The first block with words of a program that begins with a row, behind its number; None if there is none."""

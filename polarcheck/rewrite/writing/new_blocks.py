@@ -19,7 +19,15 @@ from polarcheck.program.reading.words import Text
 from polarcheck.rewrite.writing.original import Original
 from polarcheck.rewrite.writing.outcome import Refusal, RefusedError
 from polarcheck.rewrite.writing.style import Style
-from polarcheck.rules.editing import Replace, blocks_before, blocks_behind, content_of, line_end, line_without
+from polarcheck.rules.editing import (
+    Replace,
+    blocks_before,
+    blocks_behind,
+    content_of,
+    line_end,
+    line_without,
+    without_blanks,
+)
 
 
 class NewBlock(msgspec.Struct, frozen=True):
@@ -254,11 +262,12 @@ def _edit(
     """has_more: the block has comments or labels."""
     start = int(text.blocks.start[index])
     content = text.written(text.blocks, index)
-    begin, finish = content_of(text, index)
+    begin, finish = without_blanks(content, start)
     lead = begin - start
     head = _HEAD.match(without_comments(text, index) if has_more else content, lead)
     labels = range(*stretch(text.labels.block, index, index + 1)) if has_more else range(0)
-    head_end = max([head.end() if head else lead, *(int(text.labels.end[label]) - start for label in labels)])
+    head_end = max((int(text.labels.end[label]) - start for label in labels), default=0)
+    head_end = max(head.end() if head else lead, head_end)
     kept = content[lead:head_end].strip()
     if is_without_skip:
         kept = _SKIP.sub("", kept).strip()
