@@ -372,3 +372,32 @@ def test_a_number_as_another_block_has_it_is_meant_and_none_that_is_nearly_that(
     assert report_of(text, "mitsubishi-m700", "1:radius=5").findings == []
     (finding,) = report_of(text.replace("C8.66", "C8.56", 1), "mitsubishi-m700", "1:radius=5").findings
     assert "a digit is wrong: with C8.66" in finding.message
+
+
+def test_what_an_arc_that_is_none_has_hidden_is_no_reason_against_what_mends_it() -> None:
+    """A ramp of a tenth and an approach of half: without the first one the second can be seen."""
+    arcs = ["C-9.5", "G2 X0 C-17.5 I-8. J0", "X-16. C-9.5 I0 J8.", "G1 C9.5", "G2 X0 C17.5 I8. J0", "X16. C9.5 I0 J-8."]
+    moves = ["G41 G1 X16. C0 F200", *arcs, "G1 C0", "G40 X58. F1500"]
+    head = [
+        "O1",
+        "G21 G40 G98",
+        "T0909",
+        "G28 H0",
+        "G97 S3000 M13",
+        "G0 X65. Z2. C0",
+        "G12.1",
+        "G1 X58. F1500",
+        "Z-1.5",
+    ]
+    sound = "\n".join([*head, *moves, "Z2. F1500", "G13.1", "M30"]) + "\n"
+    assert told(sound) == []
+    wrong = sound.replace("G1 X58. F1500", "G1 X29. F1500").replace("X16. C0", "X1.6 C0")
+    lines = wrong.splitlines()
+    assert {lines[line - 1] for _, line in told(wrong)} >= {"G41 G1 X1.6 C0 F200"}
+    assert any("with X16." in message for message, _ in told(wrong))
+
+
+def told(text: str) -> list[tuple[str, int]]:
+    """What is said in which line, of the contour with a cutter of 16 mm in a bar of 39 mm."""
+    findings = report_of(text, "fanuc", "9:radius=8", job={"stock": {"diameter": 39}}).findings
+    return [(finding.message, finding.line) for finding in findings if finding.severity != "note"]

@@ -98,3 +98,26 @@ def test_among_many_contours_of_as_many_blocks_two_with_the_same_numbers_are_com
     head = HEAD + "".join(f"Z2.\n{blocks.format(-2)}" for blocks in (BLOCKS, *others))
     last = BLOCKS.format(-4).replace("C20.5\nX-36.2 C18.7", "X-36.2 C18.7\nC20.5")
     assert different(head + last + END) == {head.count("\n") + 3: 9}
+
+
+CHAMFERED = ["G42 X36. C-9.", "C9.", "X30. C12.", "X-30.", "X-36. C9.", "C-9.", "X-30. C-12.", "X30.", "X36. C-9."]
+SQUARE = ["G42 X36. C-9.", "C9.", "X-36.", "C-9.", "X36.", "C-5."]
+
+
+@pytest.mark.parametrize(
+    ("contour", "written", "other", "is_told"),
+    [
+        (CHAMFERED, "X-36. C9.", "X-37. C9.", True),
+        (CHAMFERED, "X-30. C-12.", "X-30. C-13.", True),
+        # A side that is moved on purpose: those beside it lead in the same direction.
+        (SQUARE, "X-36.", "X-37.", False),
+    ],
+)
+def test_a_side_that_turns_those_beside_it_is_a_mistake(
+    contour: list[str], written: str, other: str, is_told: bool
+) -> None:
+    passes = ["\n".join(contour), "\n".join(other if line == written else line for line in contour)]
+    cuts = "".join(f"G1 Z{z} F300\n{blocks} F160\nG40 X80.\n" for z, blocks in zip(("-3.", "-6."), passes, strict=True))
+    text = f"O1\nT0101\nG98 G0 X80. C-9. Z2.\nG12.1\n{cuts}G1 Z2. F900\nG13.1\nM30\n"
+    found = [one.rule for one in report_of(text, "fanuc-30i", "1:radius=5").findings if one.severity != "note"]
+    assert found == ["passes-differ"] * is_told

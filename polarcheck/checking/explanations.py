@@ -56,6 +56,8 @@ _OF_CUTTER = "overcut", "slot-narrower-than-cutter", "inside-arc-smaller-than-ra
 _OF_RATES = "c-feed-above-limit", "c-acceleration-above-limit", "x-acceleration-above-limit"
 #: The rule that speaks of a word or a code that is missing, and of no number.
 _NO_CENTER = "arc-without-center"
+#: Rules of arcs that are none: behind them nothing of the contour is judged.
+_NO_ARC = "arc-end-off-circle", "arc-radius-too-small"
 
 #: A rule and a line at which it fires.
 _Symptom = tuple[str, int]
@@ -189,6 +191,7 @@ class _Search:
         )
         whole = self._by_codes(of_code, own, others, 1)
         partly: list[_Explained] = []
+        shows_more: list[_Explained] = []
         for likely in () if whole else likely_edits(self.trace, loop, _TRIALS, LEAST_IF_WHOLE):
             best, reach = (whole, AS_LIKELY) if whole else (partly, _LESS_LIKELY)
             if best and best[0].likely.gain - likely.gain > reach:
@@ -200,7 +203,7 @@ class _Search:
             if found is not None and own.isdisjoint(line for _, line in found.left):
                 whole.append(found)
             elif found is not None and likely.is_clear:
-                partly.append(found)
+                (shows_more if found.left - self.symptoms else partly).append(found)
         rules = {rule for rule, line in self.symptoms if line in own}
         # A path that two numbers make regular has no code at the wrong place.
         is_of_two = sum(rule == REPORTS and line in own for rule, line in self.symptoms) > 1
@@ -214,6 +217,8 @@ class _Search:
         if not whole and is_of_numbers and (pair := self._pair(loop, own, others)):
             return pair
         best = whole or partly
+        if shows_more and not whole and (not partly or _exceeds(shows_more[0], partly[0])):
+            best = shows_more[:1]
         best = [found for found in best if best[0].likely.gain - found.likely.gain <= AS_LIKELY]
         if not best:
             return []
@@ -277,14 +282,21 @@ class _Search:
         return whole
 
     def _tried(self, likely: Likely, row: int, edits: list[Replace], others: set[int]) -> _Explained | None:
-        """The program with an edit: None where no symptom is gone, or another one has come but in `others`."""
+        """
+        The program with an edit: None where no symptom is gone, or another one has come but in `others`.
+
+        Behind an arc that was none others may come, which nothing could show before.
+        """
         if self.rows_left < len(self.trace):
             return None
         self.rows_left -= len(self.trace)
         left = self._left_by(edits)
-        if left is None or self.symptoms <= left or any(line not in others for _, line in left - self.symptoms):
+        if left is None or self.symptoms <= left:
             return None
-        return _Explained(likely, row, edits, self.symptoms - left, left)
+        gone, more = self.symptoms - left, {line for _, line in left - self.symptoms} - others
+        if more and not (likely.is_clear and any(rule in _NO_ARC for rule, _ in gone)):
+            return None
+        return _Explained(likely, row, edits, gone, left)
 
     def _edits(self, loop: WrittenLoop, likely: Likely) -> list[Replace]:
         """The edits of the text; none where its words stand there in another form."""
@@ -324,6 +336,10 @@ class _Search:
                 fires = hits.mask & (np.asarray(severity) >= WARNING)
                 found.update((rule.name, number) for number in set(line[fires].tolist()))
         return frozenset(found)
+
+
+def _exceeds(one: _Explained, other: _Explained) -> bool:
+    return one.likely.gain - other.likely.gain > _LESS_LIKELY
 
 
 def _under(engine: Engine, findings: Sequence[Finding], explanation: _Explained) -> list[Finding]:

@@ -97,7 +97,10 @@ class _Search:
         """The trials that make the contour regular: what they leave free, their number, the correction."""
         for number, trial in enumerate(islice(trials, _MOST_TRIALS)):
             symmetry = trial.loop.symmetry(trial.point)
-            if symmetry is not None and self._is_better(symmetry, trial):
+            # Where one block more leaves an arc that is none, it goes round that.
+            is_added = len(trial.point) > len(self.loop.point)
+            leaves_arc = is_added and bool(np.isnan(trial.loop.bulges(trial.point)).any())
+            if symmetry is not None and not leaves_arc and self._is_better(symmetry, trial):
                 row, slip = self._row(trial.at), trial.slip
                 remedy, becomes = _remedy(slip), _becomes(symmetry)
                 yield symmetry.freedom, number, Correction(row, trial.word, slip.text, slip.kind, remedy, becomes)

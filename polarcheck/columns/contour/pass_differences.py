@@ -9,7 +9,8 @@ import numpy as np
 from polarcheck.columns.contour.passes import Passes, numbered
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Columns, Mask, Points, Rows, cached_property
-from polarcheck.foundation.states import Side
+from polarcheck.foundation.states import Motion, Side
+from polarcheck.geometry.plane import cross
 
 if TYPE_CHECKING:
     from polarcheck.columns.contour.offset_passes import OddPoint
@@ -255,6 +256,7 @@ class PassDifferences(Columns, frozen=True):
             if np.abs(here - there).max() < _OTHER:
                 return None
             explained = is_rare or self._is_slip(here, there, row, model_row)
+            explained |= _turns(moves, model_moves, slice(head, head + differing[0] + 1))
         else:
             explained = sorted(differing) == [0, 1] and self._turns_at(
                 int(stretch.first[number if differing[0] else model]) + head
@@ -291,6 +293,15 @@ class PassDifferences(Columns, frozen=True):
 
         slip = slip_of(plain_number(words[0]), words[1], _SAME)
         return slip is not None and (slip.plain or len(plain_number(words[0]).strip("-").replace(".", "")) >= _FINE)
+
+
+def _turns(moves: Points, model: Points, differing: slice) -> bool:
+    """A line at a point that differs leads in another direction; those beside a side moved on purpose do not."""
+    is_line = (moves[1:, 2] == Motion.LINE) & (model[1:, 2] == Motion.LINE)
+    ways = np.diff(moves[:, 0]), np.diff(model[:, 0])
+    aside = cross(*ways) / np.maximum(np.maximum(np.abs(ways[0]), np.abs(ways[1])), _SAME)
+    turned = np.append(False, is_line & (np.abs(aside) > _OTHER))
+    return bool(turned[differing].any())
 
 
 def _agreeing(first: Points, second: Points) -> int:
