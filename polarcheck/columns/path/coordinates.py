@@ -46,12 +46,16 @@ class Coordinates(Lookups, frozen=True):
         words = self.run.words
         if self.machine.control.number_without_point == "whole-unit":
             return np.zeros(len(words), bool)
-        return np.asarray(self.is_coordinate & ~words.has_point & (np.nan_to_num(words.value) != 0))
+        without = self.is_coordinate & ~words.has_point
+        index = np.flatnonzero(without)
+        without[index] = np.nan_to_num(words.value[index]) != 0
+        return without
 
     @cached_property
     def is_large_unpointed(self) -> Mask:
         """Per word: without a point and so large that it can only be meant in least increments."""
-        return self.is_unpointed & (np.abs(self.run.words.value) >= MEANT_IN_INCREMENTS)
+        index = np.flatnonzero(self.is_unpointed)
+        return self.blocks.words_at(index[np.abs(self.run.words.value[index]) >= MEANT_IN_INCREMENTS])
 
     def written_once(self, words: Mask, group: Rows) -> tuple[Rows, Rows]:
         """
@@ -116,7 +120,7 @@ class Coordinates(Lookups, frozen=True):
         """Per word: the intended value; least: the length of an increment."""
         value, in_increments = self.run.words.value, self._counts_increments
         values = np.where(in_increments, value * least, value) if in_increments.any() else value
-        too_far = np.abs(values) > _FARTHEST
+        too_far = (values > _FARTHEST) | (values < -_FARTHEST)
         return np.where(too_far, np.nan, values) if too_far.any() else values
 
     def angle_of(self, address: str) -> Floats:
