@@ -18,7 +18,7 @@ from polarcheck.geometry.overcuts.cuts import Cuts, assign_walls, cuts_into, end
 from polarcheck.geometry.overcuts.uncompensated_moves import Bare, FlatLoops
 from polarcheck.geometry.polygons.faces import coordinates, lines_of
 from polarcheck.geometry.polygons.finished_part import Contours, FinishedParts, finished_parts
-from polarcheck.geometry.segments import Curves, Segments, boxes, members, reach_from_start, segments
+from polarcheck.geometry.segments import Curves, Segments, members, reach_from_start, segments
 from polarcheck.geometry.tolerances import ROUNDING, ZERO
 
 #: Sums over a loop are equal if they differ by less [mm]: their rounding grows with the square of its blocks.
@@ -52,7 +52,7 @@ def cuts_into_part(contour: Contours, loops: FlatLoops, bare: Bare) -> tuple[Cut
     chords, group = _chords(bare, move, group, contour.tolerance)
     radius = np.zeros(len(groups.top))
     np.maximum.at(radius, group, bare.radius[chords.move])
-    near = _comes_near(contour, groups, chords, group, radius)
+    near = _comes_near(contour, loops, groups, chords, group, radius)
     near_groups = different(group[near])
     if not len(near_groups):
         return Cuts.none(), none
@@ -153,24 +153,27 @@ def _chords(bare: Bare, move: Rows, group: Rows, tolerance: float) -> tuple[Segm
     return Segments(start, end, move[number], bare.curves.loop[move][number]), group[number]
 
 
-def _comes_near(contour: Contours, groups: _Groups, chords: Segments, group: Rows, radius: Floats) -> Mask:
+def _comes_near(
+    contour: Contours, loops: FlatLoops, groups: _Groups, chords: Segments, group: Rows, radius: Floats
+) -> Mask:
     """
     True for chords that come within R of a wall, or that begin behind their nearest wall.
 
     No other wall lies between a point and its nearest wall. If that wall turns its tool side to the point, the point is
     outside the part. Outside the box round all walls and outside the bar no part is known.
     """
-    curve, entry = members(contour.curves.loop, groups.loop)
-    curves = msgspec.structs.replace(contour.curves[curve], loop=groups.group[entry])
-    box = boxes(curves, np.flatnonzero(np.diff(curves.loop, prepend=-1)))[:, group]
+    sides = loops.box[:, np.searchsorted(loops.loop, groups.loop)]
+    begins = np.flatnonzero(np.diff(groups.group, prepend=-1))
+    low, high = np.minimum.reduceat(sides[:2], begins, axis=1), np.maximum.reduceat(sides[2:], begins, axis=1)
+    box = np.concatenate([low, high])[:, group]
     inside = (chords.start.real >= box[0]) & (chords.start.real <= box[2])
     inside &= (chords.start.imag >= box[1]) & (chords.start.imag <= box[3])
     inside = np.flatnonzero(inside | (np.abs(chords.start) < contour.bar / 2))
     far = 4 * float(np.abs(box).max() + max(np.abs(chords.start).max(), np.abs(chords.end).max())) + 1
     begin = (chords.start + far * group)[inside]
     points, line = shapely.points(coordinates(begin)), lines_of(chords.start + far * group, chords.end + far * group)
-    candidates = _nearby(curves, chords, group, radius)
-    curves, curve = curves[candidates], curve[candidates]
+    curve, group_of_curve = _nearby(contour.curves, groups, chords, group, radius)
+    curves = msgspec.structs.replace(contour.curves[curve], loop=group_of_curve)
     walls = segments(curves, contour.tolerance)
     start, end = walls.start + far * walls.loop, walls.end + far * walls.loop
     near = np.zeros(len(chords), bool)
@@ -193,16 +196,23 @@ def _comes_near(contour: Contours, groups: _Groups, chords: Segments, group: Row
     return near
 
 
-def _nearby(curves: Curves, chords: Segments, group: Rows, radius: Floats) -> Rows:
-    """Curves that may be within R of a chord of their group or nearest to its start; all if pairs are too many."""
+def _nearby(curves: Curves, groups: _Groups, chords: Segments, group: Rows, radius: Floats) -> tuple[Rows, Rows]:
+    """
+    Curves that may be within R of a chord of their group or nearest to its start; all if pairs are too many.
+
+    Returns the index of each among `curves` and its group, group after group.
+    """
+    of_group, entry = members(curves.loop, groups.loop)
+    group_of = groups.group[entry]
     _, first = np.unique(np.stack([group, chords.start, chords.end], axis=1), axis=0, return_index=True)
     start, end, group = chords.start[first], chords.end[first], group[first]
-    count = np.bincount(curves.loop, minlength=len(radius))[group]
+    count = np.bincount(group_of, minlength=len(radius))[group]
     if count.sum() > _PAIRS:
-        return np.arange(len(curves))
-    chosen, long = np.zeros(len(curves), bool), reach_from_start(curves)
+        return of_group, group_of
+    chosen, long = np.zeros(len(of_group), bool), reach_from_start(curves)
     for some in np.split(np.arange(len(group)), np.flatnonzero(np.diff(np.cumsum(count) // _PAIRS_AT_ONCE)) + 1):
-        curve, chord = members(curves.loop, group[some])
+        candidate, chord = members(group_of, group[some])
+        curve = of_group[candidate]
         from_, along = start[some], (end - start)[some]
         far = curves.start[curve] - from_[chord]
         apart = np.abs(far)
@@ -212,5 +222,5 @@ def _nearby(curves: Curves, chords: Segments, group: Rows, radius: Floats) -> Ro
         aside = np.abs(far - foot * (along / length)[chord])
         is_close = apart - long[curve] <= nearest[chord] + ROUNDING
         is_close |= aside - long[curve] <= radius[group[some]][chord] + ROUNDING
-        chosen[curve[is_close]] = True
-    return np.flatnonzero(chosen)
+        chosen[candidate[is_close]] = True
+    return of_group[chosen], group_of[chosen]
