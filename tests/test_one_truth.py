@@ -477,3 +477,56 @@ def test_what_follows_from_what_is_silenced_is_silenced(control: str) -> None:
         report = report_of((HEX[:low] + contour + HEX[high:]).replace("/", "\n") + "\n", control, CUTTER)
         assert (report.verdict, [finding.rule for finding in report.findings]) == ("pass", [])
     assert [finding.rule for finding in report.silenced] == ["rapid-in-polar"]
+
+
+@looped("control", ["fanuc-30i", "haas-lathe", "gsk-988", "okuma-osp"])
+def test_the_order_of_words_in_a_block_is_no_difference(control: str, tmp_path: Path) -> None:
+    text = program(control)
+    start = {"haas-lathe": "G97 P3000 M133", "okuma-osp": "G97 SB=3000 M13"}.get(control, "G97 S3000 M13")
+    turned = text.replace(start, " ".join(reversed(start.split()))).replace("G28 H0", "H0 G28")
+    assert turned != text
+    assert compared(tmp_path, control, text, turned).exit_code == 0
+    assert certified(tmp_path, control, text, turned).exit_code == 0
+    # Of two codes of a group the last one counts.
+    texts = [program(control, (start, f"{codes}{start.removeprefix('G97')}")) for codes in ("G97 G96", "G96 G97")]
+    assert compared(tmp_path, control, *texts).exit_code > 0
+
+
+@looped("control", ["fanuc-30i", "haas-lathe", "siemens-transmit", "okuma-osp"])
+def test_the_feed_of_a_first_move_is_compared(control: str, tmp_path: Path) -> None:
+    dot = "." if control == "haas-lathe" else ""
+    texts = [program(control, ("/G0 X60", f"/G1 Z5. F{feed}{dot}/G0 X60")) for feed in (10, 20)]
+    if control == "okuma-osp":
+        texts = [text.replace("G0 X300 Z100\n", "", 1) for text in texts]
+    assert compared(tmp_path, control, *texts).exit_code == 1
+    assert certified(tmp_path, control, *texts).exit_code == 1
+
+
+@looped(("control", "call"), [("fanuc-30i", "M98 P#500"), ("haas-lathe", "M97 P#500"), ("mazak-eia", "M98 P#500")])
+def test_a_program_that_nobody_knows_is_rewritten_by_no_command(control: str, call: str, tmp_path: Path) -> None:
+    engage = [("G28 H0", "M200/G28 H0")] * (control == "mazak-eia")
+    (file,) = written(tmp_path, program(control, *engage, ("/G0 X60", f"/{call}/G0 X60")))
+    target = "haas-lathe" if control != "haas-lathe" else "fanuc-30i"
+    options = ["--no-config", "--tool", CUTTER]
+    for command in (
+        ["unroll", "--machine", control],
+        ["compensate", "--center", "--machine", control],
+        ["convert", "--from", control, "--to", target],
+    ):
+        result = run(*command, *options, file)
+        assert (result.exit_code, result.stdout) == (2, ""), command
+
+
+@looped(
+    ("control", "unused", "used"),
+    [
+        ("fanuc-30i", "F#500", "F150"),
+        ("haas-lathe", "F#500", "F150."),
+        ("siemens-transmit", "F=R500", "F150"),
+        ("okuma-osp", "F=VC500", "F150"),
+    ],
+)
+def test_a_feed_that_no_move_runs_at_is_without_weight(control: str, unused: str, used: str) -> None:
+    text = program(control, ("/G42", f"/{unused}/G42"))
+    assert report_of(text, control, CUTTER).verdict == "pass"
+    assert report_of(text.replace(f" {used}\n", "\n"), control, CUTTER).verdict == "unverified"

@@ -117,7 +117,7 @@ class UnknownWords(Columns, frozen=True):
             # An unknown G may begin the contour that a G13.1 ends.
             return np.asarray(is_among(address, self._numbers("G")) & trace.mode.comes_before_open_end[row])
         is_position = (trace.modal.uses_axes | trace.blocks.listed(*FRAME_LISTS))[row]
-        is_position &= ~is_among(address, self._numbers(*_HARMLESS))
+        is_position &= ~is_among(address, self._numbers(*_HARMLESS, "F"))  # F where a move runs at it, below
         # An unknown code may be any code, and leave anything in force.
         letter = trace.text.source.code[trace.run.words.start[self.index]]
         is_code = is_among(address, self._numbers("G", "M", "@"))

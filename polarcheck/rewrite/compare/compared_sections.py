@@ -16,7 +16,7 @@ from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, States
 from polarcheck.foundation.states import FeedMode, Motion
 from polarcheck.geometry import polar
 from polarcheck.geometry.plane_path import SpacePath
-from polarcheck.rewrite.compare.orders import Step, special_rows
+from polarcheck.rewrite.compare.orders import Step, feed_step, special_rows
 from polarcheck.rewrite.compare.terms import Terms
 from polarcheck.rules.repair import FEED, WAY, Z
 from polarcheck.rules.wording.offsets import called_tool, to_give
@@ -181,8 +181,11 @@ def outside(trace: Trace, steps: Sequence[Step], rows: Rows, terms: Terms) -> St
     columns = [(column[row], after[row]) for column, after in zip(earlier, (path.x, path.z, path.c_angle), strict=True)]
     needs = ""
     written = (("X", "U"), ("Z", "W"), trace.machine.polar.rotary_words)
-    for (_, after), words in zip(columns, written, strict=True):
-        lost = np.isnan(after) & trace.blocks.has(*words)[row]
+    comes_from_unknown = np.zeros(len(row), bool)
+    for (begins, after), words in zip(columns, written, strict=True):
+        is_named = trace.blocks.has(*words)[row]
+        comes_from_unknown |= np.isnan(begins) & is_named
+        lost = np.isnan(after) & is_named
         if lost.any() and not needs:
             needs = f"{words[0]} of line {int(trace.blocks.line_in_file[row[np.argmax(lost)]])} is not known"
     if terms.is_rewritten and len(rows):
@@ -213,6 +216,10 @@ def outside(trace: Trace, steps: Sequence[Step], rows: Rows, terms: Terms) -> St
     rows_kept = set(rows[~is_left_out].tolist())
     steps = [step for step in steps if step.row in rows_kept]
     fed = _with_feeds(trace, of_stretch, row, terms, in_section=False)
+    if not terms.is_kept:
+        # Such a move has no length in the path, along which F is compared.
+        feeds = [feed_step(trace, int(row[move])) for move in np.flatnonzero(comes_from_unknown & ~fed.rapid).tolist()]
+        steps = sorted([*steps, *feeds], key=lambda step: step.row)
     return Stretch(-1, rows, fed, steps, c_scale=scale, is_rewritten=terms.is_rewritten, needs=needs)
 
 

@@ -67,6 +67,12 @@ def speed_in_force(trace: Trace) -> Floats:
     return fill_down(np.where(written, trace.blocks.word("S"), np.nan), written | trace.blocks.starts, np.nan)
 
 
+def feed_step(trace: Trace, row: int) -> Step:
+    """Return the F of a move at feed as an order."""
+    unit, feed = feed_unit(int(trace.feedrate.feed_mode[row])), float(trace.feedrate.feed_number[row])
+    return Step(row, int(trace.blocks.line_in_file[row]), (f"F{unit}",), (feed,), f"F{feed:g}{unit} of a first move")
+
+
 def feed_unit(feed_mode: int) -> str:
     """Return ` mm/min` or ` mm/rev` for a FeedMode; empty for another one."""
     return _FEED_MODES.get(feed_mode, "")
@@ -203,9 +209,11 @@ class _Reader:
             parts.insert(0, (side, None, side))
         if not parts:
             return None
-        tokens, values, texts = zip(*parts, strict=True)
+        text = " ".join(part[2] for part in parts)
+        # A block is executed whole, in whatever order its addresses stand; of two codes of a group the last one counts.
+        tokens, values, _ = zip(*sorted(parts, key=lambda part: part[0][0]), strict=True)
         line = int(self._trace.blocks.line_in_file[row])
-        return Step(row, line, tokens, tuple(value for value in values if value is not None), " ".join(texts))
+        return Step(row, line, tokens, tuple(value for value in values if value is not None), text)
 
     def _part(self, row: int, index: int) -> tuple[str, float | None, str] | None:
         """Return token, value and text of a word; None for a word that is compared elsewhere."""
@@ -233,7 +241,8 @@ class _Reader:
         if name in ("N", "O", "/") or (name == "F" and self._trace.modal.in_cycle[row]):
             return None
         if name == "G":
-            return token, None, text
+            written = executed_word(self._trace.run, index)
+            return token, None, text if written[:1].upper() == "G" else written
         return (name, self._length(name, row, value), text) if is_special or name not in self._of_moves else None
 
     def _feed(self, row: int) -> tuple[str, float | None, str]:

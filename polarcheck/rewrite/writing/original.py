@@ -12,6 +12,9 @@ from polarcheck.columns.words.macro_faults import reason_of
 from polarcheck.rewrite.writing.outcome import Refusal, RefusedError
 from polarcheck.rules.tables import Tables
 
+#: Remarks of blocks behind which nobody knows what runs.
+_BLOCKS_NOT_KNOWN = ("condition-unknown", "program-unknown", "return-jumps")
+
 
 class Original(msgspec.Struct, frozen=True):
     """
@@ -44,7 +47,7 @@ def read(path: str, data: bytes, settings: Settings) -> Original:
 
     Raises SourceError, TooHardError; RefusedError for a file with several channels, which wait for each other, and for
     one that runs otherwise with block skip, since one result cannot be both; and where a section rests on a variable
-    without a value, or a condition does, so that nobody knows which blocks run.
+    without a value, or a condition, a call or a return does, so that nobody knows which blocks run.
     """
     runs = check.read(data, settings.machine, settings.job, path, settings.encoding)
     if len({tables["text"].source.channel for _, tables in runs}) > 1:
@@ -58,7 +61,7 @@ def read(path: str, data: bytes, settings: Settings) -> Original:
     if any(value.matters for value in unknown_values(tables)):
         raise RefusedError(original.unknown)
     machine, lines = settings.machine, tables["text"].blocks.line
-    branches = [remark for remark in original.trace.run.remarks if remark.kind == "condition-unknown"]
-    if branches:
-        raise RefusedError([Refusal(int(lines[remark.block]), reason_of(remark, machine)) for remark in branches])
+    not_known = [remark for remark in original.trace.run.remarks if remark.kind in _BLOCKS_NOT_KNOWN]
+    if not_known:
+        raise RefusedError([Refusal(int(lines[remark.block]), reason_of(remark, machine)) for remark in not_known])
     return original
