@@ -25,9 +25,12 @@ from polarcheck.reports.pages.trace_report import without_lines
 from polarcheck.rewrite.compare.compared_sections import outside
 from polarcheck.rewrite.compare.comparison_report import Difference
 from polarcheck.rewrite.compare.order_differences import listed, order_differences
-from polarcheck.rewrite.compare.orders import Step, feed_unit, steps
+from polarcheck.rewrite.compare.orders import Step, feed_unit, rows_behind, steps
 from polarcheck.rewrite.compare.terms import ANGLE, Terms
+from polarcheck.rewrite.writing.new_blocks import without_comments
+from polarcheck.rewrite.writing.original import BLOCKS_NOT_KNOWN
 from polarcheck.rules.quantity import rounded
+from polarcheck.rules.wording.written import executed_word
 
 #: Of a golden trace [bytes]: 200,000 moves take 90 MB.
 _LARGEST = 100_000_000
@@ -93,7 +96,8 @@ class GoldenTrace(msgspec.Struct, frozen=True):
 def orders_of(trace: Trace) -> Iterator[GoldenOrder]:
     """Yield the orders of a channel in the order in which they run, with their lines."""
     channel, z_before = trace.text.source.channel, before(trace.path.z, trace.blocks.starts, np.nan)
-    in_order = [*steps(trace, is_same_machine=True), *_planes_at_entry(trace), *_moves_outside(trace)]
+    of_words = [*steps(trace, is_same_machine=True), *_not_known(trace)]
+    in_order = [*of_words, *_planes_at_entry(trace), *_moves_outside(trace)]
     for step in sorted(in_order, key=lambda step: step.row):
         section = int(trace.mode.section[step.row])
         begun = int(np.searchsorted(trace.mode.sections.enter, step.row, side="right"))
@@ -110,6 +114,18 @@ def orders_of(trace: Trace) -> Iterator[GoldenOrder]:
         )
 
 
+def _not_known(trace: Trace) -> Iterator[Step]:
+    """Yield the words of unknown value, and the blocks behind which it is not known what runs, as they are written."""
+    lines, run = trace.blocks.line_in_file, trace.run
+    for index in run.unknown_words:
+        row, word = int(run.row[index]), executed_word(run, index)
+        yield Step(row, int(lines[row]), ("not known", word), (), f"{word} of unknown value")
+    blocks = [remark.block for remark in run.remarks if remark.kind in BLOCKS_NOT_KNOWN] if len(trace) else []
+    for block, row in zip(blocks, rows_behind(trace, blocks) if blocks else (), strict=True):
+        text = "".join(without_comments(trace.text, block).split()).upper()
+        yield Step(row, int(trace.text.blocks.line[block]), ("not known", text), (), f"{text}: what runs is not known")
+
+
 def _planes_at_entry(trace: Trace) -> Iterator[Step]:
     """Yield the plane that is selected where each section begins, wherever its code stands."""
     planes, lines = trace.modal.state("plane"), trace.blocks.line_in_file
@@ -120,7 +136,10 @@ def _planes_at_entry(trace: Trace) -> Iterator[Step]:
 
 
 def _moves_outside(trace: Trace) -> Iterator[Step]:
-    """Yield the moves outside of sections: X as a radius, Z [mm], C [deg] where each ends, and F of those at feed."""
+    """
+    Yield the moves outside of sections: X as a radius, Z [mm], C [deg] where each ends, F of those at feed, and the
+    centers of arcs.
+    """
     stretch = outside(trace, (), np.arange(len(trace)), Terms(ANGLE))
     path, lines = stretch.path, trace.blocks.line_in_file[stretch.path.row].tolist()
     places = zip(path.end.imag.tolist(), path.end.real.tolist(), (path.z_end / stretch.c_scale).tolist(), strict=True)
@@ -130,6 +149,9 @@ def _moves_outside(trace: Trace) -> Iterator[Step]:
         if not path.rapid[index]:
             tokens.append(f"F{feed_unit(int(path.feed_mode[index]))}")
             values.append(float(path.feed[index]))
+        if not np.isnan(path.center[index]):
+            tokens += ["I", "K"]
+            values += [float(path.center[index].imag), float(path.center[index].real)]
         known = zip(tokens, values, strict=True)
         words = [f"{token[0]}{round(value, 4) + 0.0:g}{token[1:]}" for token, value in known if value == value]
         motion = _MOTIONS[Motion(motions[index])]

@@ -25,8 +25,6 @@ from polarcheck.rules.tables import Tables
 
 #: A run of a file as checking.check.read gives it: the state of block skip, and its tables.
 Run = tuple[str, Tables]
-#: Rules of warnings with which a control runs what is in no file.
-_RUNS_MORE = ("subprogram-missing",)
 #: What stands before the value of a word; nothing before `#2001=`.
 _ADDRESS = re.compile(r"^,?[A-Z]+(?:[0-9]*=)?")
 
@@ -80,7 +78,7 @@ def added_findings(old: Sequence[Run], new: Sequence[Run]) -> Iterator[NotCompar
     ):
         for rule in more:
             first = next(finding for finding in of_side if finding.rule == rule)
-            matters = same_comments or SEVERITIES[first.severity] >= Severity.ERROR or rule in _RUNS_MORE
+            matters = same_comments or SEVERITIES[first.severity] >= Severity.ERROR
             reason = f"{name}: a check finds {rule} in line {first.line}, and not in the other: {first.message}"
             yield NotCompared(reason, matters=matters)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -104,24 +104,31 @@ def steps(trace: Trace, *, is_same_machine: bool, with_sides: bool = True) -> li
 
 def statements(trace: Trace) -> Iterator[Step]:
     """
-    Yield the statements that change speeds and corners alone, and the blocks without N that are not simulated.
+    Yield the statements that change speeds and corners alone, and the blocks without N that are not simulated, or call
+    a program that is missing.
 
     Each has the row of the block that runs behind it.
     """
     text, listed = trace.text, trace.machine.macro.statements.items()
     names = {name.partition("[")[0].rstrip("=") for name, effect in listed if effect == "speeds"}
     unread = {remark.block for remark in trace.run.remarks if remark.kind == "not-simulated"}
+    unread |= {fault.block for fault in trace.run.faults if fault.kind == "program-not-found"}
     blocks = sorted(unread.union(np.flatnonzero(text.blocks.is_macro).tolist() if names else ()))
     if not blocks or not len(trace):
         return
-    executed, first_row = np.unique(trace.run.block, return_index=True)
-    rows = np.append(first_row, len(trace) - 1)[np.searchsorted(executed, blocks)].tolist()
-    for block, row in zip(blocks, rows, strict=True):
+    for block, row in zip(blocks, rows_behind(trace, blocks), strict=True):
         content = without_comments(text, block).upper()
         of_speeds = [match[0] for match in _STATEMENT.finditer(content) if match[1] in names]
         for written in [_NUMBER.sub("", content)] if block in unread else of_speeds:
             statement = "".join(written.split())
             yield Step(row, int(text.blocks.line[block]), (statement,), (), shortened(statement, _LONGEST))
+
+
+def rows_behind(trace: Trace, blocks: Sequence[int]) -> list[int]:
+    """Return for each block its first row, or that of the first executed block behind it; the last row at the end."""
+    executed, first_row = np.unique(trace.run.block, return_index=True)
+    rows: list[int] = np.append(first_row, len(trace) - 1)[np.searchsorted(executed, blocks)].tolist()
+    return rows
 
 
 def not_comparable(trace: Trace) -> list[str]:

@@ -8,6 +8,7 @@ import msgspec
 import numpy as np
 
 from polarcheck.checking.check import check_runs
+from polarcheck.checking.not_evaluated import unexecuted
 from polarcheck.columns.path.tool_center import ToolCenter
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Floats
@@ -71,7 +72,8 @@ def unrolled(original: Original, options: Unrolling) -> Outcome:
     sections = stretches(trace)
     if not sections:
         raise RefusedError([Refusal(0, "there is no polar section in it")])
-    if reasons := [*errors(original), *refusals(original.tables, sections)]:
+    not_judged = (Refusal(0, entry.reason) for entry in unexecuted(original.tables) if entry.matters)
+    if reasons := [*errors(original), *refusals(original.tables, sections), *not_judged]:
         raise RefusedError(reasons)
     feed = unrolled_feeds.chosen(trace, options.feed)
     center: ToolCenter = original.tables["tool_center"]

@@ -13,7 +13,7 @@ from polarcheck.rewrite.writing.outcome import Refusal, RefusedError
 from polarcheck.rules.tables import Tables
 
 #: Remarks of blocks behind which nobody knows what runs.
-_BLOCKS_NOT_KNOWN = ("condition-unknown", "program-unknown", "return-jumps")
+BLOCKS_NOT_KNOWN = ("condition-unknown", "program-unknown", "return-jumps")
 
 
 class Original(msgspec.Struct, frozen=True):
@@ -61,7 +61,7 @@ def read(path: str, data: bytes, settings: Settings) -> Original:
     if any(value.matters for value in unknown_values(tables)):
         raise RefusedError(original.unknown)
     machine, lines = settings.machine, tables["text"].blocks.line
-    not_known = [remark for remark in original.trace.run.remarks if remark.kind in _BLOCKS_NOT_KNOWN]
+    not_known = [remark for remark in original.trace.run.remarks if remark.kind in BLOCKS_NOT_KNOWN]
     if not_known:
         raise RefusedError([Refusal(int(lines[remark.block]), reason_of(remark, machine)) for remark in not_known])
     return original
