@@ -581,3 +581,23 @@ def test_what_may_move_the_path_and_is_not_simulated_is_not_unrolled(words: str,
     (file,) = written(tmp_path, text)
     result = run("unroll", "--machine", control, "--no-config", "--tool", CUTTER, file)
     assert (result.exit_code, result.stdout) == (2, "")
+
+
+@looped(
+    ("control", "words"),
+    [
+        ("fanuc-30i", "IF[#500GT0]GOTO9/G1 Z-5./N9"),
+        ("haas-lathe", "WHILE[#100LT#500]DO1/#100=#100+1./G1 W-1. F100./END1"),
+        ("siemens-transmit", "IF R500>0/G1 Z-5/ENDIF"),
+        ("okuma-osp", "IF [VC500 GT 0] N5/G101 Z-5/N5"),
+    ],
+)
+def test_a_part_that_depends_on_an_unknown_condition_is_not_known(control: str, words: str) -> None:
+    text = program(control, ("/G42", f"/{words}/G42"))
+    assert report_of(text, control, CUTTER).verdict == "unverified"
+    (shape, *_) = made_by(tables_of(text, control, CUTTER))
+    assert "the condition of line" in f"{shape.needs}"
+    assert not in_one_line(tables_of(text, control, CUTTER))
+    # Behind the section it decides nothing of the part.
+    text = program(control, ("/M30" if control != "okuma-osp" else "/M2", f"/{words}/M30"))
+    assert in_one_line(tables_of(text, control, CUTTER)).startswith("hexagon, 36.000")

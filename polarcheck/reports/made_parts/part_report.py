@@ -149,8 +149,12 @@ def _by_section(trace: Trace, tables: Tables) -> list[MadeShape]:
 
 
 def _missing(trace: Trace, section: int) -> str:
-    """Why the contour of a section is not what the program writes: a way that is not known, corners by words."""
-    return "; ".join(filter(None, (_unknown_way(trace, section), _sharp_corners(trace, section))))
+    """
+    Why the contour of a section is not what the program writes: a way that is not known, a condition that is not,
+    corners by words.
+    """
+    reasons = (_unknown_way(trace, section), _unknown_condition(trace, section), _sharp_corners(trace, section))
+    return "; ".join(filter(None, reasons))
 
 
 def _sharp_corners(trace: Trace, section: int) -> str:
@@ -180,6 +184,20 @@ def _unknown_way(trace: Trace, section: int) -> str:
     what = "X or C" if is_lost[rows[0]] else "the way"
     line = int(trace.blocks.line_in_file[rows[0]])
     return f"{what} of line {line} is not known: the contour is told without what is milled there"
+
+
+def _unknown_condition(trace: Trace, section: int) -> str:
+    """The line of a condition of unknown value in a section: which of its blocks run is not known."""
+    conditions = [remark.block for remark in trace.run.remarks if remark.kind == "condition-unknown"]
+    if not conditions:
+        return ""
+    executed = np.unique(trace.run.block)
+    block_before = executed[np.maximum(np.searchsorted(executed, conditions, side="right") - 1, 0)]
+    inside = np.isin(block_before, trace.run.block[trace.mode.section == section])
+    if not inside.any():
+        return ""
+    line = int(trace.text.blocks.line[conditions[int(np.argmax(inside))]])
+    return f"the condition of line {line} is not known: the contour is told as if it were not fulfilled"
 
 
 def _replaced_needs(entry: MadeShape, missing: str) -> MadeShape:
