@@ -95,3 +95,33 @@ def test_a_circle_unlike_those_at_other_depths_is_told(which: int, odd: str) -> 
 @pytest.mark.parametrize("circles", [GROOVE, ["G3 I-12.5", "G3 I-10."], ["G3 I-8.", "G3 I-10.", "G3 I-12.5"]])
 def test_circles_at_several_depths_that_are_meant_are_told_nothing(circles: list[str]) -> None:
     assert told(groove(circles)) == []
+
+
+SIX = [(36, 0.0), (18, 15.588), (-18, 15.588), (-36, 0.0), (-18, -15.588), (18, -15.588)]
+
+
+def six_holes(old: str = "", new: str = "") -> str:
+    cuts = "".join(f"G1 X{x}. C{c} F1500\nZ-4. F50\nG41 X{x + 10}. F110\nG3 I-5.\nG1 G40 X{x}.\nZ2.\n" for x, c in SIX)
+    head = "O1\nG21 G98 G40\nT0808\nG97 S3000 M13\nG28 H0\nG0 X50. C0 Z2.\nG12.1\n"
+    return f"{head}{cuts.replace(old, new, 1) if old else cuts}G13.1\nG0 X100. Z50.\nM5\nM30\n"
+
+
+@pytest.mark.parametrize(
+    ("written", "how"),
+    [
+        ("C51.588", "two digits are swapped: with C15.588"),
+        ("C15.558", "a digit is wrong: with C15.588"),
+        ("C1.5588", "the point is at the wrong place: with C15.588"),
+        ("", "a word is missing: with C15.588"),
+    ],
+)
+def test_a_place_off_the_polygon_of_the_others_is_told(written: str, how: str) -> None:
+    (finding,) = (one for one in report_of(six_holes("C15.588", written), "fanuc-30i", "8:radius=3").findings)
+    assert finding.line == six_holes().splitlines().index("G1 X18. C15.588 F1500") + 1
+    assert how in finding.message
+
+
+@pytest.mark.parametrize(("old", "new"), [("", ""), ("X18. C15.588", "X19.284 C15.321"), ("C15.588", "C17.")])
+def test_places_that_are_meant_are_told_nothing(old: str, new: str) -> None:
+    """One hole of six at 57.27 deg keys the part, and one lies 0.4 farther out."""
+    assert told(six_holes(old, new)) == []

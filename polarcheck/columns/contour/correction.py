@@ -11,7 +11,7 @@ class Correction(NamedTuple):
 
     row: of the block. word: the executed word that is wrong, -1 where a word or a block is missing or too many. text:
     as it is to be written. why: the slip. remedy: where the text goes, as in `with X30.`. becomes: what the contour is
-    then, as in `it would be closed`.
+    then, as in `it would be closed`. of: what the word does not fit.
     """
 
     row: int
@@ -20,3 +20,4 @@ class Correction(NamedTuple):
     why: str
     remedy: str
     becomes: str
+    of: str = "contour"

@@ -103,7 +103,9 @@ class Regularity(Columns, frozen=True):
     @cached_property
     def corrections(self) -> dict[int, Correction]:
         """By row what makes a contour symmetric."""
-        by_row: dict[int, Correction] = {}
+        from polarcheck.columns.contour.place_patterns import misplaced
+
+        by_row = {correction.row: correction for correction in misplaced(self.trace)}
         for _, found in self._corrected:
             for correction in found.symmetric:
                 by_row.setdefault(correction.row, correction)

@@ -31,12 +31,12 @@ def missing_places(point: Points, tolerance: float) -> Points:
     return each_once(np.concatenate([np.zeros(0, np.complex128), *places]), tolerance)
 
 
-def regular_polygons(point: Points, tolerance: float, missing: int) -> Iterator[Points]:
+def regular_polygons(point: Points, tolerance: float, missing: int, fewest: int = _FEWEST_SIDES) -> Iterator[Points]:
     """The corners of the regular polygons about the center that points are corners of, all but so many at least."""
     far = np.abs(point)
     for radius in each_once(far + 0j, tolerance).real:
         corner = point[(np.abs(far - radius) <= tolerance) & (far > _NEAR)]
-        for sides in range(_FEWEST_SIDES, _MOST_SIDES + 1):
+        for sides in range(fewest, _MOST_SIDES + 1):
             if len(corner) < sides - missing:
                 break
             turn = np.exp(2j * np.pi * np.arange(sides) / sides)

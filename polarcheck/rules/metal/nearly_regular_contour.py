@@ -31,7 +31,8 @@ def nearly_regular_contour(regularity: Regularity) -> Hits:
     mirror, and with this word written otherwise all of them do: two of its digits are swapped, one is missing, its sign
     or its point is wrong, it is that of another block. Or a block is missing. Nothing else objects to such a contour,
     and the part is scrap. Shapes with fewer than five corners are not looked at, nor is a side that lies elsewhere on
-    purpose, since no slip of the pen explains where it lies.
+    purpose, since no slip of the pen explains where it lies. The same is looked at where a tool goes down without
+    compensation at four places or more: all but one of them are those of a regular polygon round the center of C.
 
     Source: the geometry of the contour alone.
 
@@ -95,7 +96,7 @@ def details(hit: Hit, regularity: Regularity) -> Details:
     return {
         "word": word,
         "word_needed": text,
-        "misfit": f"{word or 'this block'} does not fit the rest of the contour, {correction.why}",
+        "misfit": f"{word or 'this block'} does not fit the rest of the {correction.of}, {correction.why}",
         "remedy": correction.remedy.replace(correction.text, text),
         "as_meant": correction.becomes,
     }

@@ -1,0 +1,90 @@
+"""Pockets and holes of one section on a circle: the one whose place is off the regular polygon of all the others."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from polarcheck.columns.contour.correction import Correction
+from polarcheck.columns.contour.written_loop import axis_words
+from polarcheck.columns.trace import Trace
+from polarcheck.columns.words.last_digit import half_of_last_digit, same_place
+from polarcheck.columns.words.slips import WORD, plain_number, slip_of
+from polarcheck.foundation.arrays import Points, Rows, different
+from polarcheck.foundation.states import Side
+from polarcheck.geometry.regularity.symmetric_corners import each_once, is_lonely, regular_polygons
+from polarcheck.geometry.tolerances import ROUNDING
+
+#: Places of a section that are compared; of the fewest a slip alone tells that no other design explains.
+_FEWEST, _MOST = 4, 36
+
+
+def misplaced(trace: Trace) -> Iterator[Correction]:
+    """The corrections of places where a tool goes down without compensation, one a section."""
+    path = trace.path
+    goes_down = path.moves_z & ~path.travels & (path.z < path.z_before - ROUNDING)
+    goes_down &= trace.mode.in_polar & (trace.compensation.side == Side.OFF) & ~np.isnan(path.end)
+    rows = np.flatnonzero(goes_down)
+    if len(rows) < _FEWEST:
+        return
+    section = trace.mode.section[rows]
+    for number in different(section).tolist():
+        if np.count_nonzero(section == number) >= _FEWEST:
+            yield from _of_section(trace, rows[section == number])
+
+
+def _of_section(trace: Trace, rows: Rows) -> Iterator[Correction]:
+    tolerance = same_place(complex(half_of_last_digit(trace)[rows[0]]))
+    place = trace.path.end[rows]
+    places = each_once(place, tolerance)
+    visits = np.count_nonzero(np.abs(place[:, None] - places) <= tolerance, axis=0)
+    if not _FEWEST <= len(places) <= _MOST or visits.min() != visits.max():
+        return
+    for polygon in regular_polygons(places, tolerance, 1, _FEWEST):
+        free, odd = polygon[is_lonely(polygon, places, tolerance)], places[is_lonely(places, polygon, tolerance)]
+        if len(polygon) == len(places) and len(free) == len(odd) == 1:
+            visit = int(np.argmax(np.abs(place - odd[0]) <= tolerance))
+            above = int(rows[visit - 1]) if visit else int(trace.mode.sections.enter[trace.mode.section[rows[0]]])
+            found = _correction(trace, above, int(rows[visit]), complex(free[0]), places)
+            if found is not None:
+                yield found
+                return
+
+
+def _correction(trace: Trace, above: int, row: int, place: complex, places: Points) -> Correction | None:
+    """The word that leads to another place than where the tool goes down in a row, if it is a slip of the pen."""
+    moves = np.arange(above + 1, row)
+    moves = moves[trace.path.travels[moves] & (trace.compensation.side[moves] == Side.OFF)]
+    if not len(moves):
+        return None
+    axes = axis_words(trace, moves)
+    tolerance = same_place(complex(half_of_last_digit(trace)[row]))
+    away = [complex((place - trace.path.end[row]) / axis.direction).real for axis in axes]
+    odd = [axis for axis, shift in zip(axes, away, strict=True) if abs(shift) > tolerance]
+    if len(odd) != 1:
+        return None
+    (axis,) = odd
+    scale = float(axis.scale[-1])
+    needed = complex(place / axis.direction).real / scale
+    # As another place has it, but for its sign: each of them is rounded.
+    sizes = np.abs((places / axis.direction).real / scale)
+    nearest = float(sizes[np.argmin(np.abs(sizes - abs(needed)))])
+    if abs(nearest - abs(needed)) <= tolerance / scale:
+        needed = float(np.copysign(round(nearest, 5), needed))
+    becomes = f"the {len(places)} places where the tool goes down would be a regular polygon"
+    written = np.flatnonzero(axis.word >= 0)
+    if not len(written):
+        text = f"{axis.address}{plain_number(round(needed, 3))}"
+        return Correction(int(moves[-1]), -1, text, "a word is missing", f"with {text}", becomes, "pattern")
+    at = int(written[-1])
+    word = WORD.fullmatch("".join(trace.run.written(int(axis.word[at])).split()))
+    slip = (
+        None
+        if word is None or axis.is_step[at]
+        else (slip_of(word[2], needed, ROUNDING) or slip_of(word[2], needed, tolerance / scale))
+    )
+    if word is None or slip is None or (len(places) == _FEWEST and not slip.plain):
+        return None
+    text = word[1] + slip.text
+    return Correction(int(moves[at]), int(axis.word[at]), text, slip.kind, f"with {text}", becomes, "pattern")
