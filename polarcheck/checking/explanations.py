@@ -293,8 +293,10 @@ class _Search:
         left = self._left_by(edits)
         if left is None or self.symptoms <= left:
             return None
-        gone, more = self.symptoms - left, {line for _, line in left - self.symptoms} - others
-        if more and not (likely.is_clear and any(rule in _NO_ARC for rule, _ in gone)):
+        gone, more = self.symptoms - left, {(rule, line) for rule, line in left - self.symptoms if line not in others}
+        rules = {rule for rule, _ in gone}
+        is_judged = not likely.is_clear or rules.isdisjoint(_NO_ARC) or not rules.isdisjoint(rule for rule, _ in more)
+        if more and is_judged:
             return None
         return _Explained(likely, row, edits, gone, left)
 

@@ -20,21 +20,16 @@ from polarcheck.geometry.tolerances import ROUNDING
 _FEWEST, _MOST = 4, 36
 
 
-def misplaced(trace: Trace) -> Iterator[Correction]:
-    """The corrections of places where a tool goes down without compensation, one a section."""
-    path = trace.path
-    goes_down = path.moves_z & ~path.travels & (path.z < path.z_before - ROUNDING)
-    goes_down &= trace.mode.in_polar & (trace.compensation.side == Side.OFF) & ~np.isnan(path.end)
-    rows = np.flatnonzero(goes_down)
-    if len(rows) < _FEWEST:
-        return
+def misplaced(trace: Trace, rows: Rows) -> Iterator[Correction]:
+    """The corrections of places where a tool goes down without compensation, which are these rows; one a section."""
     section = trace.mode.section[rows]
     for number in different(section).tolist():
-        if np.count_nonzero(section == number) >= _FEWEST:
-            yield from _of_section(trace, rows[section == number])
+        yield from _of_section(trace, rows[section == number])
 
 
 def _of_section(trace: Trace, rows: Rows) -> Iterator[Correction]:
+    if len(rows) < _FEWEST:
+        return
     tolerance = same_place(complex(half_of_last_digit(trace)[rows[0]]))
     place = trace.path.end[rows]
     places = each_once(place, tolerance)

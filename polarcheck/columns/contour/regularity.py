@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -9,8 +10,10 @@ import numpy as np
 from polarcheck.columns.contour.plane_loops import PlaneLoop, loops_of, smooth_share
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Columns, Mask, Rows, cached_property
+from polarcheck.foundation.states import Side
 from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.regularity.symmetry import Symmetry
+from polarcheck.geometry.tolerances import ROUNDING
 
 if TYPE_CHECKING:
     from polarcheck.columns.contour.correction import Correction
@@ -21,6 +24,8 @@ if TYPE_CHECKING:
 _PLAIN_ORDER, _FEWEST_CORNERS = 2, 5
 #: Share of the ends of arcs that may be tangent by chance.
 _SMOOTH_BY_CHANCE = 0.25
+#: Places at which a tool goes down.
+_FEWEST_PLACES = 4
 
 
 class XReading(NamedTuple):
@@ -100,12 +105,22 @@ class Regularity(Columns, frozen=True):
             corrected.append((loop, corrections_of(self.trace, loop, written)))
         return corrected
 
+    @property
+    def _misplaced(self) -> Iterable[Correction]:
+        """What makes the places regular where a tool goes down without compensation."""
+        trace, path = self.trace, self.trace.path
+        goes_down = path.moves_z & ~path.travels & (path.z < path.z_before - ROUNDING) & trace.mode.in_polar
+        rows = np.flatnonzero(goes_down & (trace.compensation.side == Side.OFF) & ~np.isnan(path.end))
+        if len(rows) < _FEWEST_PLACES:
+            return ()
+        from polarcheck.columns.contour.place_patterns import misplaced  # most sections go down at one place
+
+        return misplaced(trace, rows)
+
     @cached_property
     def corrections(self) -> dict[int, Correction]:
         """By row what makes a contour symmetric."""
-        from polarcheck.columns.contour.place_patterns import misplaced
-
-        by_row = {correction.row: correction for correction in misplaced(self.trace)}
+        by_row = {correction.row: correction for correction in self._misplaced}
         for _, found in self._corrected:
             for correction in found.symmetric:
                 by_row.setdefault(correction.row, correction)
