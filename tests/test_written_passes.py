@@ -45,10 +45,24 @@ def test_a_sound_program_is_silent() -> None:
         ("C0.\nG40 X80. C0.", "G40 C0.\nX80. C0.", {28: 12}),
         ("C20.5", "X20.5", {24: 8}),
         ("C20.5\nX-36.2 C18.7", "X-36.2 C18.7\nC20.5", {24: 8}),
+        # A side in two blocks is the same side, one with another corner is not.
+        ("C20.5", "C8.\nC20.5", {}),
+        ("X-44.3 C-15.4", "X-40.25 C1.65\nX-44.3 C-15.4", {}),
+        ("X-44.3 C-15.4", "X-41.25 C1.65\nX-44.3 C-15.4", {26: 10}),
     ],
 )
 def test_what_differs_in_the_last_of_three_passes(old: str, new: str, expected: dict[int, int]) -> None:
     assert different(program(old, new)) == expected
+
+
+def test_arcs_of_one_circle_are_one_however_they_are_divided() -> None:
+    whole = "Z{}.\nG42 X40. C0 F80\nC10.\nG3 X-40. I-20. J0\nG1 C-10.\nG3 X40. I20. J0\nG1 C0\nG40 X80. F800\n"
+    divided = whole.replace("G3 X-40. I", "G3 X20. C27.321 I-20. J0\nX-40. C10. I").replace(
+        "0. I-20. J0\nG1", "0. I-10. J-17.321\nG1"
+    )
+    assert divided.count("\n") == whole.count("\n") + 1
+    assert different(HEAD + whole.format(-2) + divided.format(-4) + END) == {}
+    assert different(HEAD + whole.format(-2) + divided.format(-4).replace("X-40. C10.", "X-40. C1.") + END) == {18: 9}
 
 
 @looped(

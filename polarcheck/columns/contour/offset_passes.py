@@ -77,7 +77,9 @@ def _odd_point(passes: Passes, model: int, number: int) -> OddPoint | None:
         if len(odd) == 1 and np.count_nonzero(is_corner[:-1]) >= _FEWEST and (np.delete(off, odd) <= _ALIKE).all():
             at = int(odd[0])
             move, place = int(moves[0]) + at - 1, passes.start[ring[0]] if not at else passes.end[ring[at - 1]]
-            if move >= passes.first[number]:
+            # A point on a side of the pass is no corner that went elsewhere.
+            is_on_side = is_corner[at] and abs(passes.turns[1][move]) <= _STRAIGHT
+            if move >= passes.first[number] and not is_on_side:
                 uneven = float(np.delete(off, odd).max())
                 return OddPoint(move, int(ring[0]) + at - 1, distance, complex(place + shift[at]), uneven)
     return None

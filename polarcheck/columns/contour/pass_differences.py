@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
 #: Points nearer to each other than this [mm] are the same, and how far off a point is that differs.
 _SAME, _OTHER = 1e-4, 0.004
+#: Arcs with centers nearer to each other than this [mm] are of one circle: their ends are rounded.
+_CIRCLE = 0.05
 #: Moves that may differ, and the least number that agree.
 _MOST_DIFFERING, _LEAST_AGREEING = 3, 2
 #: Digits of a number from which on one other digit is a slip, and no other dimension.
@@ -230,16 +232,28 @@ class PassDifferences(Columns, frozen=True):
                     break
         return differences
 
-    def _items(self, stretch: _Stretch, number: int) -> Points:
-        """Per move of a pass its end, its center, and its motion: complex128[moves, 3]."""
+    @cached_property
+    def _runs_on(self) -> Mask:
+        """Per move: the next one of its pass goes on along the same line or circle, so that no corner is between."""
+        passes = self.passes
+        start, corner, end = passes.start[:-1], passes.end[:-1], passes.end[1:]
+        off = ((corner - start) * np.conj(end - start)).imag / np.maximum(np.abs(end - start), _SAME)
+        is_ahead = ((corner - start) * np.conj(end - corner)).real > 0
+        on_line = ~passes.is_arc[:-1] & ~passes.is_arc[1:] & (np.abs(off) <= _OTHER) & is_ahead
+        on_circle = (np.abs(np.diff(passes.center)) <= _CIRCLE) & (np.diff(passes.motion) == 0)
+        return np.append((on_line | on_circle) & (np.diff(passes.number) == 0), False)
+
+    def _items(self, stretch: _Stretch, number: int) -> tuple[Rows, Points]:
+        """The moves with which lines and arcs of a pass end: of each its end, its center, and its motion."""
         passes = self.passes
         moves = np.arange(stretch.first[number], stretch.last[number] + 1)
+        moves = moves[~self._runs_on[moves] | (moves == moves[-1])]
         center = np.where(np.isnan(passes.center[moves]), 0, passes.center[moves])
-        return np.stack((passes.end[moves], center, passes.motion[moves].astype(np.complex128)), axis=1)
+        return moves, np.stack((passes.end[moves], center, passes.motion[moves].astype(np.complex128)), axis=1)
 
     def _difference(self, stretch: _Stretch, number: int, model: int, is_rare: bool) -> Difference | None:
         """Where a pass differs from a model of it, if a slip explains that; is_rare: more passes are as the model."""
-        moves, model_moves = self._items(stretch, number), self._items(stretch, model)
+        (rows, moves), (model_rows, model_moves) = self._items(stretch, number), self._items(stretch, model)
         shorter = min(len(moves), len(model_moves))
         head = _agreeing(moves[:shorter], model_moves[:shorter])
         tail = min(_agreeing(moves[::-1][:shorter], model_moves[::-1][:shorter]), shorter - head)
@@ -248,7 +262,7 @@ class PassDifferences(Columns, frozen=True):
             return None
         if not tail:
             return None
-        row, model_row = (int(self.passes.row[stretch.first[which] + head]) for which in (number, model))
+        row, model_row = (int(self.passes.row[ends[head]]) for ends in (rows, model_rows))
         if self.trace.run.block[row] == self.trace.run.block[model_row] and differing[0] == differing[1]:
             return None
         if differing[0] == differing[1]:
@@ -258,19 +272,10 @@ class PassDifferences(Columns, frozen=True):
             explained = is_rare or self._is_slip(here, there, row, model_row)
             explained |= _turns(moves, model_moves, slice(head, head + differing[0] + 1))
         else:
-            explained = sorted(differing) == [0, 1] and self._turns_at(
-                int(stretch.first[number if differing[0] else model]) + head
-            )
+            explained = sorted(differing) == [0, 1]
         if not explained:
             return None
         return Difference(row, model_row, differing[0] < differing[1], *self._rows_of(model))
-
-    def _turns_at(self, move: int) -> bool:
-        """The pass turns where a move of it ends that the other one does not have: it is no point on a line."""
-        passes = self.passes
-        start, corner, end = passes.start[move], passes.end[move], passes.end[move + 1]
-        off = ((corner - start) * np.conj(end - start)).imag / max(abs(end - start), _SAME)
-        return bool(abs(off) > _OTHER or passes.is_arc[move] or passes.is_arc[move + 1])
 
     def _is_slip(self, here: Points, there: Points, row: int, second_row: int) -> bool:
         """
