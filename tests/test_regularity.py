@@ -83,6 +83,23 @@ def test_what_differs_on_purpose_is_silent(seeds: Sequence[int]) -> None:
 
 
 @looped(
+    "contour",
+    [
+        # Arms of four lengths, of which two differ by half a millimeter.
+        "X35. C-6.5/C6.5/X11./C21./X-11./C6.5/X-34./C-6.5/X-11./C-17./X11./C-6.5/X35.",
+        "X43. C-5.5/C5.5/X14./C15.5/X-14./C5.5/X-41./C-5.5/X-14./C-15./X14./C-5.5/X43.",
+        # A notch, which is no square with a quarter missing.
+        "X35. C17.5/X-35./C-14.5/X0/C-17.5/X35./C17.5",
+    ],
+)
+def test_a_side_that_lies_elsewhere_is_meant(contour: str) -> None:
+    blocks = contour.replace("/", "\n")
+    program = f"O1\nG21 G98 G40\nT0101\nG0 X90. Z2. C-30.\nG12.1\nG1 X70. C-30. F300\nZ-2.\nG42 {blocks}\n"
+    report = report_of(f"{program}G40 X70. C30.\nG13.1\nM30\n", "fanuc", only=["nearly-regular-contour"])
+    assert report.findings == []
+
+
+@looped(
     ("written", "meant", "kind"),
     [
         ("13.586", 13.856, "two digits are swapped"),
@@ -90,6 +107,7 @@ def test_what_differs_on_purpose_is_silent(seeds: Sequence[int]) -> None:
         ("17.321", -17.321, "the sign is wrong"),
         ("1.7321", 17.321, "the point is at the wrong place"),
         ("133.856", 13.856, "a digit is too many"),
+        ("15.5", 15.0, "a digit is too many"),
         ("3.856", 13.856, "a digit is missing"),
         ("15.", 30.0, "it is half or twice as large"),
         ("28.", 30.0, None),

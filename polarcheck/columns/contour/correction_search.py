@@ -15,7 +15,7 @@ from polarcheck.columns.contour.plane_loops import PlaneLoop
 from polarcheck.columns.contour.written_loop import AxisWords, axis_words, written_loop
 from polarcheck.columns.trace import Trace
 from polarcheck.columns.words.slips import WORD, Slip, plain_number, slips_of
-from polarcheck.foundation.arrays import Points, Rows, cached_property
+from polarcheck.foundation.arrays import Mask, Points, Rows, cached_property
 from polarcheck.geometry.regularity.symmetric_corners import each_once, is_lonely, missing_places, regular_polygons
 from polarcheck.geometry.regularity.symmetry import Symmetry
 
@@ -35,6 +35,8 @@ _MOST_TRIALS, _ENDS, _GAPS = 80, 3, 3
 _MOST_EDITS, _LEAST_GAIN, _GAIN_ALONE, _FEWEST_BLOCKS = 16, 0.5, 3.8, 6
 #: The gain of a slip that is often made, and makes all arcs tangent.
 _GAIN_IF_COMMON = 3.0
+#: Sine of the turn at a point within a straight side.
+_STRAIGHT = 0.002
 #: The gain with more symmetry, by which so many numbers more are fixed.
 _GAIN_IN_SYMMETRY, _LEAST_FIXED = 2.4, 3
 
@@ -165,6 +167,8 @@ class _Search:
     def _of_edits(self) -> Correction | None:
         """The likeliest edit that makes the contour symmetric; where one in another block is as likely, with that."""
         loop = written_loop(self.trace, self._row_of_points)
+        # Where sides are divided, the number of different lengths tells nothing.
+        may_be_likely = not _are_within_sides(self.loop.point, self.loop.turns).any()
         found: list[tuple[Likely, Correction, Symmetry]] = []
         best = -1
         for likely in likely_edits(self.trace, loop, _MOST_EDITS, _LEAST_GAIN):
@@ -174,7 +178,8 @@ class _Search:
             outline = outlines_of(loop, [edit])
             point, turns, radius, to_center = (part[1] for part in outline)
             edited = self.loop._replace(turns=turns, radius=radius, to_center=to_center)
-            slip = Slip(edit.text, edit.why, edit.is_plain, edit.is_common)
+            moves_side = not edit.is_of_pen and self._keeps_directions(point)
+            slip = Slip(edit.text, edit.why, edit.is_plain and not moves_side, edit.is_common)
             symmetry = edited.symmetry(point)
             if symmetry is None:
                 continue
@@ -182,7 +187,9 @@ class _Search:
             is_symmetric = self._is_better(symmetry, _Trial(edit.corner, -1, slip, point, edited))
             if best < 0 and is_symmetric and edit.kind not in {"arc", "sense"}:
                 best = len(found) - 1
-            elif self.likely is None and (is_symmetric or self._is_clear(likely, symmetry)):
+            elif (
+                may_be_likely and self.likely is None and (is_symmetric or self._is_clear(likely, symmetry, moves_side))
+            ):
                 self.likely = found[-1][1]
         if best < 0:
             return None
@@ -194,9 +201,9 @@ class _Search:
                 break
         return correction._replace(becomes=_becomes(symmetry))
 
-    def _is_clear(self, likely: Likely, symmetry: Symmetry) -> bool:
+    def _is_clear(self, likely: Likely, symmetry: Symmetry, moves_side: bool) -> bool:
         """An edit closes the contour, or makes all its arcs tangent or the contour more symmetric, and is no chance."""
-        if likely.gain >= _GAIN_IN_SYMMETRY and self._is_more_symmetric(symmetry):
+        if not moves_side and likely.gain >= _GAIN_IN_SYMMETRY and self._is_more_symmetric(symmetry):
             return True
         is_whole = likely.smooths or (likely.closes and self.written is None)
         least = _GAIN_IF_COMMON if likely.smooths and likely.edit.is_common else _GAIN_ALONE
@@ -333,12 +340,8 @@ class _Search:
 
     def _flattens(self, trial: _Trial) -> bool:
         """A corner beside the additional block lies on a straight side then: nobody wrote a corner of no use."""
-        middle = trial.at + np.array([-1, 1])
-        middle = middle[(middle > 0) & (middle < len(trial.point) - 1)]
-        into, out = (trial.point[middle + step] - trial.point[middle + step - 1] for step in (0, 1))
-        lines = (trial.loop.turns[middle - 1] == 0) & (trial.loop.turns[middle] == 0)
-        aside = np.abs((into.conj() * out).imag) <= self.tolerance * np.abs(into + out)
-        return bool((lines & aside & ((into.conj() * out).real > 0)).any())
+        is_within = np.append(_are_within_sides(trial.point, trial.loop.turns), [False, False])
+        return bool(is_within[[trial.at - 2, trial.at]].any())
 
     @cached_property
     def _usual_arc(self) -> tuple[int, float]:
@@ -379,6 +382,14 @@ class _Search:
             parts = [code, *parts, f"{machine.arcs.radius_word}{plain_number(round(self._usual_arc[1] / scale, 4))}"]
         slip = Slip(" ".join(parts), "a block is missing", False)
         return _Trial(corner + 1, -1, slip, np.insert(moved, corner + 1, point), self._with_edge(corner, turns))
+
+
+def _are_within_sides(point: Points, turns: Rows) -> Mask:
+    """Points but for the first and the last at which two lines go straight on, bool[n - 2]."""
+    step = np.diff(point)
+    turn = step[:-1].conj() * step[1:]
+    is_straight = np.abs(turn.imag) <= _STRAIGHT * np.abs(turn)
+    return np.asarray(is_straight & (turn.real > 0) & (turns[:-1] == 0) & (turns[1:] == 0))
 
 
 def _remedy(slip: Slip) -> str:

@@ -23,6 +23,8 @@ _SAME_NUMBER, _STEPS = 5e-5, 1.5
 #: decimals than what is written, one of a block that is not beside it, and one that is nearly that of another block.
 _SELDOM, _ELSEWHERE, _OF_BLOCK, _SAME_SIZE, _FINER, _FAR, _NEARLY = 0.3, 0.2, 0.4, 0.1, 0.6, 2.5, 0.4
 
+#: What no R, I or J that is meant is larger than, as a multiple of how far the path reaches from its start.
+_LARGEST_ARC = 5.0
 #: An angle in degrees is a multiple of this, from twice as much on; what is said of one.
 _PART_OF_TURN, _FULL_TURN = 15.0, 360.0
 _IS_ANGLE = "it looks like an angle"
@@ -37,7 +39,7 @@ class Edit(NamedTuple):
     kind: what it changes. corner: the block, 0 for the move before. words: the executed words that it replaces. text:
     what is written instead, or put behind the last word. why: the slip. cost: how unlikely the slip is. axis: of a
     word, 0 for X. value: its number, for a word of an arc the factor. how: what is to be done, where it is more than to
-    write the text.
+    write the text. is_of_pen: no other design is likely to differ by the slip alone.
     """
 
     kind: Literal["word", "missing", "letter", "exchanged", "arc", "sense", "twice", "order", "code"]
@@ -49,6 +51,7 @@ class Edit(NamedTuple):
     axis: int = 0
     value: float = np.nan
     how: str = ""
+    is_of_pen: bool = True
 
     @property
     def remedy(self) -> str:
@@ -100,7 +103,8 @@ def _of_axis(trace: Trace, loop: WrittenLoop, number: int) -> Iterator[Edit]:
         beside = tuple(neighbors[~np.isnan(neighbors)].tolist())
         is_angle = number == 1 and _looks_like_angle(loop, corner)
         for slip, cost in _numbers(written, float(axis.value[corner]), others, beside, is_angle=is_angle):
-            yield Edit("word", corner, (word,), address + slip.text, slip.kind, cost, number, float(slip.text))
+            text, value = address + slip.text, float(slip.text)
+            yield Edit("word", corner, (word,), text, slip.kind, cost, number, value, is_of_pen=slip.plain)
         if axis.is_step[corner] and corner and is_open:
             value = _rounded(float(axis.value[corner]) + gap / float(axis.scale[corner]), axis)
             text = address + plain_number(value)
@@ -147,12 +151,15 @@ def _on_circles(trace: Trace, loop: WrittenLoop, number: int) -> dict[int, tuple
 def _of_arcs(trace: Trace, loop: WrittenLoop, address: str) -> Iterator[Edit]:
     words = loop.arc_words[address]
     values, axis = trace.run.words.value[words[words >= 0]], max("RIJ".find(address), 0)
+    ends = loop.points([one.value[None] for one in loop.axes], [one.is_step[None] for one in loop.axes])[0]
+    longest = _LARGEST_ARC * np.abs(ends - ends[0]).max() / loop.axes[1].scale
     for block, word in enumerate(words.tolist()):
         had = float(trace.run.words.value[word]) if word >= 0 else 0.0
         letters, written = _parts(trace, word) if word >= 0 else ("", "")
         if letters and had:
             for slip, cost in _numbers(written, had, (0.0, *_sizes(values)), tuple(values.tolist())):
-                if (value := float(slip.text)) or axis:
+                value = float(slip.text)
+                if (value or axis) and abs(value) <= max(longest[block + 1], abs(had)):
                     text, factor = letters + slip.text, value / had
                     yield Edit("arc", block + 1, (word,), text, slip.kind, cost, axis, factor)
 
@@ -219,8 +226,8 @@ def _numbers(
     step = _STEPS * 10.0 ** -_decimals(written)
     of_pen = list(slips_of(written))
     exact = {_key(slip.text) for slip in of_pen}
-    # A number that one slip writes exactly is none that another one writes but for rounding.
-    inexact = tuple(size for size in others if _key(size) not in exact and _key(-size) not in exact)
+    # A number that one slip writes exactly is none that another one writes but for rounding, and nobody rounds to 0.
+    inexact = tuple(size for size in others if size and _key(size) not in exact and _key(-size) not in exact)
     likely = (slip._replace(text=_of_others(float(slip.text), slip.text, inexact, step)) for slip in of_pen)
     slips = [(slip, _cost(slip, written, others, step)) for slip in likely]
     for size in others:

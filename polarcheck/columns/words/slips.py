@@ -61,7 +61,7 @@ def _slips(sign: str, whole: str, point: str, rest: str) -> Iterator[Slip]:
     for factor in _POINTS:
         yield Slip(plain_number(value * factor), "the point is at the wrong place", True)
     for at in range(len(digits)):
-        doubled = at and digits[at] == digits[at - 1]
+        doubled = at not in (0, len(whole)) and digits[at] == digits[at - 1]
         less = places - (at >= len(whole))
         yield Slip(number(digits[:at] + digits[at + 1 :], less), "a digit is too many", bool(doubled))
         for other in "0123456789":
