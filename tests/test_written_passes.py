@@ -135,3 +135,11 @@ def test_a_side_that_turns_those_beside_it_is_a_mistake(
     text = f"O1\nT0101\nG98 G0 X80. C-9. Z2.\nG12.1\n{cuts}G1 Z2. F900\nG13.1\nM30\n"
     found = [one.rule for one in report_of(text, "fanuc-30i", "1:radius=5").findings if one.severity != "note"]
     assert found == ["passes-differ"] * is_told
+
+
+def test_an_arc_of_nearly_half_a_turn_has_the_r_that_it_needs() -> None:
+    """The rounding of its ends shifts its center by 0.1 mm off that of the other arc."""
+    contour = "C7.058\nG3 X1.984 C15.468 R15.5\nG1 X-27.784 C6.875\nG3 X27.6 C-7.058 R15.5\nG1 C0\n"
+    text = f"{HEAD}Z-2.\nG42 X27.6 C0 F80\n{contour}G40 X80. F800\n{END}"
+    assert report_of(text, "fanuc", "1:radius=2").findings == []
+    assert report_of(text.replace("C-7.058 R15.5", "C-7.058 R16.5"), "fanuc", "1:radius=2").findings != []

@@ -107,7 +107,11 @@ class SameCircle(Columns, frozen=True):
             fits &= passes.beside[0][move] != passes.beside[1][move]
             center[fits], radius[fits], adjacent[fits] = about[fits], size[fits], True
         chosen = near | adjacent
-        return self._intended(move[chosen], center[chosen], radius[chosen])
+        intended = self._intended(move[chosen], center[chosen], radius[chosen])
+        # An R that is written as it is meant: of nearly 180 deg, its center is shifted by the rounding of its ends.
+        is_other = ~(np.abs(self.arcs.radius[passes.row[intended.move]] - intended.radius) <= _SAME)
+        index = np.flatnonzero(chosen)[is_other]
+        return self._intended(move[index], center[index], radius[index])
 
     @cached_property
     def reversed(self) -> Mask:
