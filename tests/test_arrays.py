@@ -7,7 +7,16 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from polarcheck.foundation.arrays import computed, different, first_of_each, is_among, is_uniform, median, repeated
+from polarcheck.foundation.arrays import (
+    computed,
+    different,
+    first_of_each,
+    folded,
+    is_among,
+    is_uniform,
+    median,
+    repeated,
+)
 
 NUMBERS = st.lists(st.one_of(st.integers(-5, 5).map(float), st.floats(allow_nan=False)), max_size=9)
 
@@ -26,6 +35,13 @@ def test_the_first_of_each_value_is_that_of_numpy(values: list[float]) -> None:
 
 
 @pytest.mark.ci
+@given(st.lists(st.tuples(st.integers(0, 3), st.floats(-9, 9)), max_size=12))
+def test_folds_of_groups_are_those_of_their_values(pairs: list[tuple[int, float]]) -> None:
+    group, values = np.array([number for number, _ in pairs], np.int64), np.array([value for _, value in pairs])
+    expected = [min([value for number, value in pairs if number == asked], default=99.0) for asked in range(4)]
+    assert folded(np.minimum, group, values, 4, 99.0).tolist() == expected
+
+
 @given(st.one_of(NUMBERS, st.lists(st.just(float("nan")), max_size=2)), NUMBERS)
 def test_values_among_others_are_those_of_numpy(values: list[float], wanted: list[float]) -> None:
     assert is_among(np.array(values), wanted).tolist() == np.isin(values, wanted).tolist()

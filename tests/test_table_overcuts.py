@@ -8,6 +8,7 @@ from cases import looped
 from programs import report_of, said, tables_of
 
 from polarcheck.columns.contour.overcuts import CutsOfRows, loop_of_row, objected
+from polarcheck.geometry.overcuts import own_loop
 from polarcheck.rules.tables import Tables
 
 #: A groove of 6 mm between C3 and C-3 through the middle of a square of 40, gone round on the outside.
@@ -31,6 +32,20 @@ def test_a_groove_narrower_than_the_cutter(radius: float, depth: float) -> None:
     expected = {line: pytest.approx(depth, abs=0.003) for line in (6, 12)} if depth else {}
     assert {line: found for line, found in depths(tables).items() if line in (6, 12)} == expected
     assert set(depths(tables)) == ({6, 12} if depth else set())
+
+
+@pytest.mark.ci
+def test_loops_are_searched_alike_one_by_one_and_all_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    body = GROOVE.partition("G41")[2].partition("G13.1")[0]
+    deeper = "".join(f"G1 Z{-depth}. C3.\nG41{body}" for depth in (1, 2, 3))
+    program = f"T0101\nG98 G0 X100. Z2. C0\nG12.1\nG1 C3. F500\n{deeper}G13.1\n"
+    found = []
+    for at_once in (1, 20_000):
+        monkeypatch.setattr(own_loop, "_AT_ONCE", at_once)
+        cuts = tables_of(program, "fanuc", "1:radius=4")["overcuts"].cuts
+        found.append([getattr(cuts, column).tolist() for column in ("row", "into", "depth", "place")])
+    assert found[0] == found[1]
+    assert len(set(found[0][0])) == 6
 
 
 def test_who_is_cut_into_and_where() -> None:

@@ -6,6 +6,8 @@ import pytest
 from cases import looped
 from programs import report_of, tables_of
 
+from polarcheck.geometry.overcuts import without_compensation
+
 RULE = "uncompensated-cut-into-part"
 MM = "O1\nG21 G40 G97 G98 G18\nT0101\nG0 X150. Z2. C0\nG12.1\nG1 X90. C0 F500\n{}\nG13.1\nM30\n"
 INCH = MM.replace("G21", "G20").replace("X150. Z2.", "X6. Z.1").replace("X90. C0 F500", "X4. C0 F20.")
@@ -93,6 +95,15 @@ def test_in_inch_and_where_rapid_traverse_is_allowed() -> None:
     )
     [finding] = [one for one in report.findings if one.rule == RULE]
     assert (finding.severity, finding.count) == ("error", 3)
+
+
+def test_walls_near_moves_are_found_alike_one_by_one_and_all_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    pocket = "G41 X16. C0/C6./X-16./C-6./X16./C0/G40 X4. C1."
+    blocks = f"Z-3./{HEXAGON}/C21./X-80./C60./X90./C0/Z2./X4. C1./Z-6./{pocket}/X30."
+    all_at_once = found(blocks)
+    monkeypatch.setattr(without_compensation, "_PAIRS_AT_ONCE", 1)
+    assert found(blocks) == all_at_once
+    assert len(all_at_once) > 1
 
 
 def test_where_rapid_traverse_is_an_alarm_it_follows_from_that() -> None:

@@ -10,7 +10,7 @@ from cases import looped
 from programs import ROOT, tables_of, tables_of_example
 
 import polarcheck as api
-from polarcheck.checking import check
+from polarcheck.checking import check, engine
 from polarcheck.foundation.finding import FileReport
 from polarcheck.rules.examples import examples
 from polarcheck.rules.rule import load_all
@@ -48,6 +48,19 @@ def test_all_that_no_finding_reads_is_forgotten(monkeypatch: pytest.MonkeyPatch)
     report, unmade_or_forgotten = forgotten(tables_of(program))
     assert report == of_short
     assert unmade_or_forgotten - unmade >= {"tool_center", "dynamics", "ramps", "overcuts", "passes", "bar", "written"}
+
+
+def test_equal_columns_of_a_long_program_are_one_array(monkeypatch: pytest.MonkeyPatch) -> None:
+    program = (SAMPLES / "hexagon.nc").read_bytes()
+    reports, shared = [], []
+    for many in (engine._MANY_ROWS, 0):
+        monkeypatch.setattr(engine, "_MANY_ROWS", many)
+        tables = tables_of(program)
+        reports.append(check.report_of(check.engine_of(tables, RULES)))
+        shared.append(tables["mode"].enters is tables["axes"].switches_on)
+        assert tables["mode"].enters is not tables["mode"].leaves
+    assert reports[0] == reports[1]
+    assert shared == [False, True]
 
 
 def test_what_a_finding_reads_stays(monkeypatch: pytest.MonkeyPatch) -> None:
