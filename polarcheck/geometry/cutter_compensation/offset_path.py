@@ -15,7 +15,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, States, column_at
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, States, column_at, mask_at
 from polarcheck.foundation.states import Motion
 from polarcheck.geometry.cutter_compensation.offset_vectors import Vectors, end_vectors
 from polarcheck.geometry.cutter_compensation.programmed_path import Method, Path, Programmed, fits, moving_rows
@@ -305,14 +305,12 @@ def _along(programmed: Programmed, blocks: _Blocks) -> _Moves:
     blocks.leave[closed] = blocks.entry[closed]
     kept = np.flatnonzero(~(length <= ZERO) | (programmed.full & ~(blocks.in_mode & blocks.known)))
     # A full circle and a bit more would be taken as that bit alone: it is run in two halves.
-    round_ = 2 * np.pi * np.abs(blocks.leave[kept] - programmed.center[kept])
-    halved = (
-        programmed.full[kept]
-        & blocks.in_mode[kept]
-        & blocks.known[kept]
-        & (np.abs(blocks.leave[kept] - blocks.entry[kept]) > ZERO)
-    )
-    halved &= length[kept] > round_
+    whole = np.flatnonzero(programmed.full[kept])
+    circle = kept[whole]
+    round_ = 2 * np.pi * np.abs(blocks.leave[circle] - programmed.center[circle])
+    apart = np.abs(blocks.leave[circle] - blocks.entry[circle]) > ZERO
+    is_halved = blocks.in_mode[circle] & blocks.known[circle] & apart & (length[circle] > round_)
+    halved = mask_at(len(kept), whole[is_halved])
     first = np.cumsum(halved + 1)[halved] - 2
     kept = np.repeat(kept, halved + 1)
     start, end, turning = blocks.entry[kept], blocks.leave[kept], blocks.turning[kept]
