@@ -204,6 +204,4 @@ def main(ctx: click.Context) -> None:
 
     Every option can also be given by the environment: POLARCHECK_MACHINE for --machine.
     """
-    if ctx.invoked_subcommand is None:
-        click.echo(ctx.get_help(), err=True)
-        ctx.exit(COULD_NOT_RUN)
+    options.need_command(ctx)

@@ -11,7 +11,6 @@ import click
 
 from polarcheck.commands import options
 from polarcheck.commands.check import check
-from polarcheck.commands.exit_codes import COULD_NOT_RUN
 from polarcheck.commands.output import say, show
 
 if TYPE_CHECKING:
@@ -46,9 +45,7 @@ def baseline(ctx: click.Context) -> None:
     A finding is known by its rule and its block, whatever its line: programs can be renumbered, punched out and moved.
     Give the options that you give to check.
     """
-    if ctx.invoked_subcommand is None:
-        click.echo(ctx.get_help(), err=True)
-        ctx.exit(COULD_NOT_RUN)
+    options.need_command(ctx)
 
 
 def _output(text: str) -> Callable[[Any], Any]:

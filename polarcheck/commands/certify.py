@@ -36,7 +36,7 @@ _FORMATS = ("text", "json", "html")
 @click.option("--update", is_flag=True, help="Write the golden traces of cases that pass otherwise.")
 @option("--case", "names", multiple=True, metavar="TEXT", help="Only this case; may be repeated.")
 @option("--machine", "machines", multiple=True, metavar="NAME|FILE", help="With init: a control; may be repeated.")
-@option("--color", type=click.Choice(["auto", "always", "never"]), default="auto", show_default=True)
+@options.color
 @options.max_size
 @options.debug
 @click.pass_context

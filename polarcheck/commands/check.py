@@ -77,7 +77,7 @@ _OF_FILES = ("text", "short", "concise", "json", "jsonl")
 @options.cache_dir
 @options.no_cache
 @watching.watch
-@option("--color", type=click.Choice(["auto", "always", "never"]), default="auto", show_default=True)
+@options.color
 @option("--show-following", "following", is_flag=True, help="In text, what follows from a finding, too.")
 @silencing.show_silenced
 @option("--part", "part", is_flag=True, help="In text, JSON and pages, what the program makes, too.")

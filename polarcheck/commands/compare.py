@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import click
 
 from polarcheck.commands import options
-from polarcheck.commands.options import narrower, option
+from polarcheck.commands.options import option
 from polarcheck.foundation.errors import PolarcheckError, TooHardError, UsageError
 
 if TYPE_CHECKING:
@@ -41,8 +41,8 @@ class _Pair(NamedTuple):
     show_default="the least increment of the control",
     help="Up to this, lengths are the same, in the units of OLD.",
 )  # fmt: skip
-@narrower("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
-@option("--color", type=click.Choice(["auto", "always", "never"]), default="auto", show_default=True)
+@options.text_or_json
+@options.color
 @option("--settings-of", "named", metavar="FILE", help="Use the settings of this program for both, as a difftool does.")
 @option("--git", "is_git", is_flag=True, help="Take the seven arguments that git gives a diff driver; end with 0.")
 @options.extensions

@@ -16,7 +16,7 @@ The shell itself looks for files and folders: it knows how to write names with b
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from copy import copy
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
@@ -44,20 +44,19 @@ def _item(value: str, about: str = "", kind: str = "plain", head: str = "") -> I
 # ---- values by metavar ----
 
 
-def _files(begun: str) -> Iterator[Item]:
-    yield _item(begun, kind="file")
+def _paths(ending: str = "", kind: str = "file") -> Values:
+    """Return what completes a path."""
+    return lambda begun: iter((_item(begun, ending, kind),))
 
 
-def _folders(begun: str) -> Iterator[Item]:
-    yield _item(begun, kind="dir")
+def _matching(begun: str, values: Iterable[tuple[str, str]], head: str = "", end: str = "") -> Iterator[Item]:
+    """
+    Yield the values that begin as the word does, each given with what is said of it.
 
-
-def _profiles(begun: str) -> Iterator[Item]:
-    yield _item(begun, _PROFILE, "file")
-
-
-def _drawings(begun: str) -> Iterator[Item]:
-    yield _item(begun, ".dxf", "file")
+    end: of values behind which the word goes on.
+    """
+    kind = "part" if end else "plain"
+    yield from (_item(f"{value}{end}", about, kind, head) for value, about in values if value.startswith(begun))
 
 
 def _machines(begun: str) -> Iterator[Item]:
@@ -65,8 +64,8 @@ def _machines(begun: str) -> Iterator[Item]:
     from polarcheck.program import machines
 
     titles = {path.stem: _title_of_machine(path) for path in Path(machines.__file__).parent.glob("*.toml")}
-    yield from (_item(name, title) for name, title in sorted(titles.items()) if name.startswith(begun))
-    yield from _profiles(begun)
+    yield from _matching(begun, sorted(titles.items()))
+    yield from _paths(_PROFILE)(begun)
 
 
 def _title_of_machine(path: Path) -> str:
@@ -76,21 +75,19 @@ def _title_of_machine(path: Path) -> str:
 
 def _machines_and_verbs(begun: str) -> Iterator[Item]:
     verbs = {"check": "whether a file for a lathe is sound", "new": "a file for a lathe of your own"}
-    yield from (_item(verb, about) for verb, about in verbs.items() if verb.startswith(begun))
+    yield from _matching(begun, verbs.items())
     yield from _machines(begun)
 
 
 def _rules(begun: str) -> Iterator[Item]:
     """Yield rules and groups, for the last name of a list with commas."""
     before, comma, last = begun.rpartition(",")
-    yield from (_item(name, about, head=before + comma) for name, about in _names_of_rules() if name.startswith(last))
+    yield from _matching(last, _names_of_rules(), before + comma)
 
 
 def _pages(begun: str) -> Iterator[Item]:
     verdicts = dict.fromkeys(("pass", "unverified", "fail", "unreadable"), "what this verdict means")
-    for name, about in [*_names_of_rules(), *verdicts.items()]:
-        if name.startswith(begun):
-            yield _item(name, about)
+    yield from _matching(begun, [*_names_of_rules(), *verdicts.items()])
 
 
 def _names_of_rules() -> Iterator[tuple[str, str]]:
@@ -112,7 +109,7 @@ def _levels(begun: str) -> Iterator[Item]:
 
     name, equals, level = begun.partition("=")
     if equals:
-        yield from (_item(level_name, head=f"{name}=") for level_name in LEVELS if level_name.startswith(level))
+        yield from _matching(level, ((known, "") for known in LEVELS), f"{name}=")
     else:
         yield from (_item(f"{item.value}=", item.help or "", "part") for item in _rules(name))
 
@@ -120,7 +117,7 @@ def _levels(begun: str) -> Iterator[Item]:
 def _in_doubt(begun: str) -> Iterator[Item]:
     from polarcheck.rewrite.convert.doubtful_values import KEYS
 
-    yield from (_item(key) for key in KEYS if key.startswith(begun))
+    yield from _matching(begun, ((key, "") for key in KEYS))
 
 
 def _outputs(begun: str) -> Iterator[Item]:
@@ -131,7 +128,7 @@ def _outputs(begun: str) -> Iterator[Item]:
     if colon:
         yield _item(path, kind="file", head=f"{form}:")
     else:
-        yield from (_item(f"{name}:", "a report in a file", "part") for name in formats() if name.startswith(form))
+        yield from _matching(form, ((known, "a report in a file") for known in formats()), end=":")
 
 
 def _keys(begun: str) -> Iterator[Item]:
@@ -142,9 +139,8 @@ def _keys(begun: str) -> Iterator[Item]:
 
     for field in msgspec.structs.fields(Machine):
         if isinstance(field.type, type) and issubclass(field.type, msgspec.Struct):
-            for key, about in meanings(field.type).items():
-                if f"{field.name}.{key}".startswith(begun):
-                    yield _item(f"{field.name}.{key}=", about, "part")
+            keys = ((f"{field.name}.{key}", about) for key, about in meanings(field.type).items())
+            yield from _matching(begun, keys, end="=")
 
 
 def _tool(begun: str) -> Iterator[Item]:
@@ -152,8 +148,7 @@ def _tool(begun: str) -> Iterator[Item]:
     number, colon, values = begun.rpartition(":")
     before, comma, key = values.rpartition(",")
     if colon and "=" not in key:
-        head = f"{number}:{before}{comma}"
-        yield from (_item(f"{name}=", "", "part", head) for name in ("radius", "nose") if name.startswith(key))
+        yield from _matching(key, (("radius", ""), ("nose", "")), f"{number}:{before}{comma}", "=")
 
 
 def _encodings(begun: str) -> Iterator[Item]:
@@ -167,7 +162,7 @@ def _encodings(begun: str) -> Iterator[Item]:
         "gb18030": "Chinese",
         "euc_kr": "Korean",
     }
-    yield from (_item(name, about) for name, about in encodings.items() if name.startswith(begun))
+    yield from _matching(begun, encodings.items())
 
 
 def _nothing(begun: str) -> Iterator[Item]:
@@ -179,9 +174,9 @@ Values = Callable[[str], Iterator[Item]]
 #: The completion of the values of options, by their metavar; options of click's own types need none.
 OPTIONS: dict[str, Values] = {
     "EXT": _nothing,
-    "FILE": _files,
-    "FILE.dxf": _drawings,
-    "FOLDER": _folders,
+    "FILE": _paths(),
+    "FILE.dxf": _paths(".dxf"),
+    "FOLDER": _paths(kind="dir"),
     "FORMAT:FILE": _outputs,
     "KEY": _in_doubt,
     "KEY=VALUE": _keys,
@@ -191,8 +186,8 @@ OPTIONS: dict[str, Values] = {
     "N:KEY=VALUE": _tool,
     "NAME": _encodings,
     "NAME|FILE": _machines,
-    "PATH": _files,
-    "PATTERN": _files,
+    "PATH": _paths(),
+    "PATTERN": _paths(),
     "REF": _nothing,
     "RULE": _rules,
     "RULE=LEVEL": _levels,
@@ -202,12 +197,12 @@ OPTIONS: dict[str, Values] = {
 }
 #: The same for arguments.
 ARGUMENTS: dict[str, Values] = {
-    "FILE": _files,
-    "FOLDER": _folders,
-    "LATHE": _profiles,
+    "FILE": _paths(),
+    "FOLDER": _paths(kind="dir"),
+    "LATHE": _paths(_PROFILE),
     "NAME": _machines_and_verbs,
-    "OLD NEW": _files,
-    "PATH": _files,
+    "OLD NEW": _paths(),
+    "PATH": _paths(),
     "RULE": _pages,
 }
 

@@ -9,8 +9,6 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from polarcheck.commands import options
-from polarcheck.commands.exit_codes import COULD_NOT_RUN
-from polarcheck.commands.options import narrower
 from polarcheck.commands.output import show as print_out
 from polarcheck.commands.output import warn
 
@@ -23,9 +21,7 @@ if TYPE_CHECKING:
 @click.pass_context
 def config(ctx: click.Context) -> None:
     """Show what polarcheck.toml and the options say of a program."""
-    if ctx.invoked_subcommand is None:
-        click.echo(ctx.get_help(), err=True)
-        ctx.exit(COULD_NOT_RUN)
+    options.need_command(ctx)
 
 
 @config.command
@@ -35,7 +31,7 @@ def config(ctx: click.Context) -> None:
 @options.comparing
 @options.extensions
 @options.exclude
-@narrower("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
+@options.text_or_json
 @options.debug
 @click.pass_context
 def show(ctx: click.Context, /, path: str, **arguments: Any) -> None:

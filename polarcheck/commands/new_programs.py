@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import click
 
-from polarcheck.commands.options import Decorator, narrower, option
+from polarcheck.commands.options import Decorator, color, narrower, option
 from polarcheck.commands.output import is_terminal, show, warn
 from polarcheck.foundation.errors import OutputError, UsageError
 
@@ -55,7 +55,7 @@ OPTIONS: Sequence[Decorator] = (
         "--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True,
         help="json: on standard output what comes of it, in place of the program, which -o writes.",
     ),
-    option("--color", type=click.Choice(["auto", "always", "never"]), default="auto", show_default=True),
+    color,
     option("-q", "--quiet", is_flag=True, help="Say only what is to be decided, or why it is refused."),
 )  # fmt: skip
 

@@ -11,6 +11,7 @@ from typing import Any
 
 import click
 
+from polarcheck.commands.exit_codes import COULD_NOT_RUN
 from polarcheck.files.settings.declarations import SETTINGS
 
 Decorator = Callable[[Any], Any]
@@ -147,6 +148,13 @@ def is_written(ctx: click.Context, option: str) -> bool:
     return ctx.get_parameter_source(name) is click.core.ParameterSource.COMMANDLINE
 
 
+def need_command(ctx: click.Context) -> None:
+    """Show the help of a group, and end with an exit code, where none of its commands is named."""
+    if ctx.invoked_subcommand is None:
+        click.echo(ctx.get_help(), err=True)
+        ctx.exit(COULD_NOT_RUN)
+
+
 def _set_debug(ctx: click.Context, parameter: click.Parameter, value: bool) -> None:
     if value:
         ctx.meta[DEBUG] = True
@@ -212,6 +220,8 @@ def _dashed(name: str) -> str:
 
 
 machine, extensions, exclude = map(setting, ("machine", "extensions", "exclude"))
+color = option("--color", type=click.Choice(["auto", "always", "never"]), default="auto", show_default=True)
+text_or_json = narrower("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
 machine_from = option(
     "--from", "machine", metavar="NAME|FILE",
     help="The lathe that the program is for: one of `polarcheck machines`, or a TOML file of your own.",

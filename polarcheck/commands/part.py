@@ -7,14 +7,13 @@ from typing import Any
 import click
 
 from polarcheck.commands import options
-from polarcheck.commands.options import narrower
 
 
 @click.command(short_help="Tell what a program makes: hexagon, 27.000 across flats.")
 @click.argument("paths", nargs=-1, required=True, metavar="PATH...")
 @options.executing("programs")
 @options.comparing
-@narrower("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
+@options.text_or_json
 @options.extensions
 @options.exclude
 @options.max_size

@@ -5,12 +5,11 @@ from __future__ import annotations
 import click
 
 from polarcheck.commands import options
-from polarcheck.commands.options import narrower
 from polarcheck.commands.output import show
 
 
 @click.command
-@narrower("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
+@options.text_or_json
 @options.debug
 def rules(form: str) -> None:
     """List all rules: severity, name, title."""

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 )
 @option("--golden", is_flag=True, help="Leave out lines, as a file to compare with wants it: it survives renumbering.")
 @option("--show", "shown_too", type=click.Choice(["path"]), help="A picture of each section in place of the table.")
-@option("--color", type=click.Choice(["auto", "always", "never"]), default="auto", show_default=True)
+@options.color
 @options.max_size
 @options.debug
 def trace(

@@ -133,8 +133,8 @@ class Programs:
     def _labels(self) -> dict[int, dict[str, list[int]]]:
         """The blocks of each label, by the first block of its program."""
         names = self.text.labels
-        columns = (names.block.tolist(), names.start.tolist(), names.end.tolist())
-        places = [(block, self.text.source.excerpt(*span).upper()) for block, *span in zip(*columns, strict=True)]
+        spans = side_by_side(names.block, names.start, names.end)
+        places = [(block, self.text.source.excerpt(*span).upper()) for block, *span in spans]
         places += [(block, (match[1] or match[2]).upper()) for block, match in self._in_macro(label_in)]
         return self._by_program(places)
 
