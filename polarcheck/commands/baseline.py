@@ -122,7 +122,7 @@ def _none_yet(path: Path) -> Contents:
     from polarcheck.program.reading import files
 
     if path.exists() or path.is_symlink():
-        name = files.display_path(str(path))
+        name = files.display_path(path)
         raise BaselineError(f"-o {name}: is there already; `polarcheck baseline update` rewrites it, or name another")
     return Contents()
 
@@ -133,9 +133,7 @@ def _contents(path: Path) -> Contents:
     from polarcheck.program.reading import files
 
     if not path.exists():
-        raise BaselineError(
-            f"-o {files.display_path(str(path))}: there is none; `polarcheck baseline create` writes it"
-        )
+        raise BaselineError(f"-o {files.display_path(path)}: there is none; `polarcheck baseline create` writes it")
     return baseline_file.read(path)
 
 
@@ -173,7 +171,7 @@ def _run(
     target = output or _of_jobs(tasks)
     contents = read(target)
     tasks = _with_baseline(tasks, target)
-    overwriting.refuse_name(os.path.realpath(target), f"-o {files.display_path(str(target))}")
+    overwriting.refuse_name(os.path.realpath(target), f"-o {files.display_path(target)}")
     checked = running.Runner(max_size, workers, cluster).check(tasks, Bar(len(tasks), not quiet), faults)
     status = faults.report()
     if checked.stopped is not None:
@@ -184,7 +182,7 @@ def _run(
     updated, summary = make(baseline, contents, checked, tasks, reason)
     files.write(target, baseline_file.text_of(updated), rewrites=True)
     if not quiet:
-        show(f"{head(files.display_path(str(target)))}: {summary}\n")
+        show(f"{head(files.display_path(target))}: {summary}\n")
     return status
 
 
@@ -236,7 +234,7 @@ def _pruned(baseline: Baseline, before: Contents, checked: Checked, tasks: list[
 
 def _counts(contents: Contents) -> str:
     from polarcheck.files.baselines.baseline import Baseline
-    from polarcheck.reports import counted
+    from polarcheck.foundation.errors import counted
 
     files = len({entry.file for entry in contents.entries})
     return f"{counted(Baseline.total(contents.entries), 'finding')} of {counted(files, 'file')}"

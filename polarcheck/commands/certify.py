@@ -152,7 +152,7 @@ def _refuse(outputs: list[tuple[str, Path]], loaded: Loaded, settings: Mapping[s
     goldens = {os.path.realpath(loaded.beside(case.golden)) for case in loaded.cases.values() if case.golden}
     for _, output in outputs:
         if os.path.realpath(output) in goldens:
-            raise OutputError(f"-o {display_path(str(output))}: is a golden trace of the manifest; name another file")
+            raise OutputError(f"-o {display_path(output)}: is a golden trace of the manifest; name another file")
 
 
 def _update(loaded: Loaded, certified: dict[str, Certified], chosen: frozenset[str]) -> int:

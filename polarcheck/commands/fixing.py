@@ -263,7 +263,7 @@ class _Work:
 
     def summarize(self) -> None:
         """Write one line on all fixes, if no report says it."""
-        from polarcheck.reports import counted
+        from polarcheck.foundation.errors import counted
 
         more = f"{self.left} more with --unsafe-fixes" if self.left else ""
         if self.wanted.diff:

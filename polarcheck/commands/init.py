@@ -129,10 +129,10 @@ def _init(folder: str, machine: str | None, extensions: tuple[str, ...], schema:
     files.write(path, new_job.text(results, written, outer, schema, extensions))
     if is_new:
         files.write(schema_path, schemas.as_text(schemas.schema("job")))
-    lines = [f"{head(files.display_path(str(path)))} written: {new_job.summary(results)}"]
+    lines = [f"{head(files.display_path(path))} written: {new_job.summary(results)}"]
     if schema:
         lies = "beside it, for editors" if is_new else "is there already, and stays as it is"
-        lines.append(f"{head(files.display_path(str(schema_path)))} {lies}")
+        lines.append(f"{head(files.display_path(schema_path))} {lies}")
     if outer:
         lines.append(f"{head(outer)} has applied here so far: `extend` in the new file lets it apply still")
     lines += ["still to fill in:", *(f"  {line}" for line in new_job.left_open(results, written))]

@@ -12,7 +12,7 @@ import click
 
 from polarcheck.commands.options import Decorator, color, narrower, option
 from polarcheck.commands.output import is_terminal, show, warn
-from polarcheck.foundation.errors import OutputError, UsageError
+from polarcheck.foundation.errors import OutputError, UsageError, why
 
 if TYPE_CHECKING:
     from polarcheck.files.batch.tasks import Task
@@ -112,7 +112,7 @@ def outputs(request: Wanted, tasks: Sequence[Task], paths: Sequence[str]) -> Map
             if files.is_standard_input(task.place):
                 raise UsageError(f"-o {out}: a folder; name the file, or give --stdin-filename")
             output /= _name_in_folder(task.place, paths)
-        title = f"-o {files.display_path(str(output))}"
+        title = f"-o {files.display_path(output)}"
         if output in by_task.values():
             raise UsageError(f"{title}: two programs would be written to this file")
         refuse_input(output, title, folders)
@@ -132,7 +132,7 @@ def _refuse_existing(output: Path) -> None:
     from polarcheck.program.reading import files
 
     if output.is_file():
-        raise OutputError(f"-o {files.display_path(str(output))}: it is there already; --force replaces it")
+        raise OutputError(f"-o {files.display_path(output)}: it is there already; --force replaces it")
 
 
 def write(request: Wanted, task: Task, old: bytes, new: bytes, output: Path | None) -> str | None:
@@ -159,10 +159,9 @@ def write(request: Wanted, task: Task, old: bytes, new: bytes, output: Path | No
     try:
         output.parent.mkdir(parents=True, exist_ok=True)
     except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or error
-        raise OutputError(f"{files.display_path(str(output.parent))}: {reason}") from None
+        raise OutputError(f"{files.display_path(output.parent)}: {why(error)}") from None
     files.write(output, new, refuse_new)
-    return files.display_path(str(output))
+    return files.display_path(output)
 
 
 def print_program(data: bytes, path: str, encoding: str | None) -> None:

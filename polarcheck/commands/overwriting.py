@@ -55,7 +55,7 @@ def refuse(outputs: Sequence[Path], tasks: Sequence[Task], options: Mapping[Path
     written: set[str] = set()
     for output in outputs:
         target = _real(output)
-        named = f"{(options or {}).get(output, '-o')} {files.display_path(str(output))}"
+        named = f"{(options or {}).get(output, '-o')} {files.display_path(output)}"
         refuse_input(output, named, folders)
         if target in places:  # standard input is judged as a file that need not be there
             raise OutputError(f"{named}: it is read by this run; name another file")

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from polarcheck.commands.output import is_terminal
-from polarcheck.foundation.errors import OutputError, UsageError
+from polarcheck.foundation.errors import OutputError, UsageError, why
 from polarcheck.program.reading.files import display_path, write
 
 if TYPE_CHECKING:
@@ -54,8 +54,7 @@ def create_folder(folder: Path) -> None:
     try:
         folder.mkdir(exist_ok=True)
     except (OSError, ValueError) as error:
-        said = getattr(error, "strerror", None) or error
-        raise OutputError(f"{display_path(str(folder))}: {said}") from None
+        raise OutputError(f"{display_path(folder)}: {why(error)}") from None
 
 
 class Pictures:
@@ -190,7 +189,7 @@ def of_outputs(
     if to_output or any(form == FORMAT for form, _ in files):
         refuse(tasks, to_output and is_terminal(sys.stdout), example)
     if len(folders) > 1:
-        raise UsageError(f"{example}{display_path(str(folders[1]))}: pages are written to one folder only")
+        raise UsageError(f"{example}{display_path(folders[1])}: pages are written to one folder only")
     if not folders:
         return Pictures(), files, [path for _, path in files]
     folder = Folder(folders[0], tasks)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from polarcheck.commands.options import option
-from polarcheck.foundation.errors import OutputError, UsageError
+from polarcheck.foundation.errors import OutputError, UsageError, why
 
 if TYPE_CHECKING:
     from polarcheck.checking.settings import Extra, Settings
@@ -111,8 +111,7 @@ def written(outputs: Iterable[tuple[str, Path]], form: str, report: Report, plai
                 raise ValueError(reason)
             _append(summary, report, plain)
         except (OSError, ValueError) as error:
-            said = getattr(error, "strerror", None) or error
-            yield OutputError(f"{STEP_SUMMARY}: {files.display_path(summary)}: {said}")
+            yield OutputError(f"{STEP_SUMMARY}: {files.display_path(summary)}: {why(error)}")
 
 
 def _append(path: str, report: Report, plain: Background) -> None:

@@ -34,21 +34,8 @@ def actions(
             is_preferred=is_preferred or None,
             edit=_edit(edits, analysis, uri, version, with_versions),
         )
-        for finding in _in(analysis, selected)[:_MOST]
+        for finding in analysis.findings_in(selected.start, selected.end)[:_MOST]
         for title, is_preferred, edits in _offered(finding, analysis)
-    ]
-
-
-def _in(analysis: Analysis, selected: types.Range) -> list[Finding]:
-    if analysis.report is None:
-        return []
-    text = analysis.text
-    first, last = text.offset(selected.start), text.offset(selected.end)
-    return [
-        finding
-        for finding in analysis.report.findings
-        if text.offset_of(finding.line, finding.column) <= last
-        and text.offset_of(finding.end_line, finding.end_column) >= first
     ]
 
 

@@ -8,6 +8,7 @@ from types import MappingProxyType
 from typing import NamedTuple, Protocol
 
 import numpy as np
+from lsprotocol import types
 
 from polarcheck.checking import check
 from polarcheck.checking.settings import Settings
@@ -15,7 +16,7 @@ from polarcheck.columns.trace import Trace
 from polarcheck.editor.open_text import OpenText
 from polarcheck.foundation import bounded, record
 from polarcheck.foundation.errors import PolarcheckError, StoppedError
-from polarcheck.foundation.finding import FileReport
+from polarcheck.foundation.finding import FileReport, Finding
 from polarcheck.foundation.time_limit import seconds_for, time_limit
 from polarcheck.program.execution.runs import texts_of
 from polarcheck.program.reading import files, source
@@ -68,6 +69,16 @@ class Analysis(NamedTuple):
         texts = [trace.text for trace in self.traces] or list(self.plain)
         return [text for index, text in enumerate(texts) if all(text is not earlier for earlier in texts[:index])]
 
+    def findings_in(self, first: types.Position, last: types.Position) -> list[Finding]:
+        """Return the findings whose words are, in part at least, between two positions."""
+        text, start, end = self.text, self.text.offset(first), self.text.offset(last)
+        return [
+            finding
+            for finding in (self.report.findings if self.report is not None else ())
+            if text.offset_of(finding.line, finding.column) <= end
+            and text.offset_of(finding.end_line, finding.end_column) >= start
+        ]
+
     def row_of(self, line: int) -> tuple[Tables, int, int] | None:
         """Return the first run that executes a line, the first of its rows and their number; None if no run does."""
         for _, tables in self.runs:
@@ -113,7 +124,7 @@ def judge(
             settings = settings_of(path)
             job = settings.job
             with time_limit(seconds_for(len(text.data), job.run.max_seconds), is_stopped):
-                runs = check.read(text.data, settings.machine, job, files.display_path(str(path)))
+                runs = check.read(text.data, settings.machine, job, files.display_path(path))
                 report = check.check_runs(runs, settings.rules, settings.severities, settings.inline)
                 if settings.baseline is not None:
                     report = _without_known(report, runs, path, settings)
@@ -132,7 +143,7 @@ def _plain(text: OpenText, path: Path, settings: Settings, is_stopped: Callable[
     """Return the text of each channel of a program that could not be checked."""
     try:
         with time_limit(seconds_for(len(text.data), settings.job.run.max_seconds), is_stopped):
-            return texts_of(source.read_source(text.data, files.display_path(str(path))), settings.machine)
+            return texts_of(source.read_source(text.data, files.display_path(path)), settings.machine)
     except StoppedError:
         raise
     except (PolarcheckError, MemoryError):

@@ -46,7 +46,7 @@ def hover(analysis: Analysis, position: types.Position, with_markdown: bool) -> 
     """Return the pages of the findings at a position, its word, and the state of its block; None without any."""
     if analysis.report is None:
         return None
-    findings, word = findings_at(analysis, position), word_at(analysis, position)
+    findings, word = analysis.findings_in(position, position), word_at(analysis, position)
     parts: list[str] = []
     line = analysis.text.line_of(position)
     range_of_hover = analysis.text.line_range(line)
@@ -86,20 +86,6 @@ def _facts_at(
         title, facts = state(analysis, line)
         if facts:
             yield title, facts
-
-
-def findings_at(analysis: Analysis, position: types.Position) -> list[Finding]:
-    """Return the findings whose words are at a position."""
-    if analysis.report is None:
-        return []
-    offset, text = analysis.text.offset(position), analysis.text
-    return [
-        finding
-        for finding in analysis.report.findings
-        if text.offset_of(finding.line, finding.column)
-        <= offset
-        <= text.offset_of(finding.end_line, finding.end_column)
-    ]
 
 
 def _pages(analysis: Analysis, findings: list[Finding], with_markdown: bool) -> str:

@@ -120,6 +120,11 @@ class RuleError(PolarcheckError):
     """A rule file that is not a valid rule; raised when the rules are loaded."""
 
 
+def why(error: Exception) -> str:
+    """Return what the system says of an error; of any other one its text."""
+    return str(getattr(error, "strerror", None) or error)
+
+
 def one_line(text: str) -> str:
     """Return a text as the message of an error shows it."""
     return text if text.isprintable() else "".join(map(_visible, text))
@@ -148,6 +153,12 @@ def first_of(names: Sequence[str], most: int, separator: str = ", ") -> str:
     """Return the first names, and how many more there are: `a, b and 3 more`."""
     more = f" and {len(names) - most} more" if len(names) > most else ""
     return separator.join(names[:most]) + more
+
+
+def counted(number: int, noun: str) -> str:
+    """`1 error`, `2 errors`, `2 fixes`."""
+    ending = "" if number == 1 else "es" if noun.endswith("x") else "s"
+    return f"{number} {noun}{ending}"
 
 
 def consecutive(numbers: Iterable[int]) -> list[list[int]]:

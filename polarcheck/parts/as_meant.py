@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from polarcheck.foundation.errors import counted
 from polarcheck.foundation.states import Units
 
 if TYPE_CHECKING:
@@ -31,6 +32,6 @@ def as_meant(trace: Trace, section: int) -> str:
     inch = bool(trace.lengths.units[row] == Units.INCH)
     read = f"{value * control.least_increment_inch:.4f}" if inch else f"{value * control.least_increment:.3f}"
     more = len(words) - 1
-    remark = f" (and {more} more number{'s' if more > 1 else ''} without a decimal point)" if more else ""
+    remark = f" (and {counted(more, 'more number')} without a decimal point)" if more else ""
     line = int(trace.blocks.line_in_file[row])
     return f"line {line}: {word} is taken as {word}., as probably meant{remark}; the control reads {read}"

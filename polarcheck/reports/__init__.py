@@ -138,12 +138,6 @@ def settings_lines(report: Report) -> Iterator[str]:
         yield from settings_line(report)
 
 
-def counted(number: int, noun: str) -> str:
-    """`1 error`, `2 errors`, `2 fixes`."""
-    ending = "" if number == 1 else "es" if noun.endswith("x") else "s"
-    return f"{number} {noun}{ending}"
-
-
 def painted(style: str, text: str) -> str:
     """Return the text in color for a terminal."""
     return f"\x1b[{_STYLES[style]}m{text}\x1b[0m" if text else text

@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING
 
 from msgspec import UNSET
 
+from polarcheck.foundation.errors import counted
 from polarcheck.foundation.finding import UNREADABLE
 from polarcheck.program.reading.excerpt import visible
 from polarcheck.program.reading.files import STANDARD_INPUT
-from polarcheck.reports import SEVERITIES, counted, settings_lines
+from polarcheck.reports import SEVERITIES, settings_lines
 from polarcheck.reports.ci.repository_paths import from_root
 from polarcheck.reports.concise import line, unreadable_line
 from polarcheck.reports.text import summary, verdict

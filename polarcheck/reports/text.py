@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from msgspec import UNSET
 
+from polarcheck.foundation.errors import counted
 from polarcheck.foundation.finding import DESELECTED, FAIL, PASS, UNREADABLE, UNVERIFIED
 from polarcheck.foundation.patterns import lazy_pattern
 from polarcheck.program.reading.excerpt import excerpt, visible, without_commands
-from polarcheck.reports import SEVERITIES, Background, Parts, counted, of_each, painted, settings_lines
+from polarcheck.reports import SEVERITIES, Background, Parts, of_each, painted, settings_lines
 from polarcheck.reports.pages.resting import resting
 
 if TYPE_CHECKING:

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from polarcheck.foundation.errors import counted
 from polarcheck.foundation.finding import UNREADABLE
-from polarcheck.reports import SEVERITIES, counted
+from polarcheck.reports import SEVERITIES
 from polarcheck.reports.pages.resting import resting
 from polarcheck.reports.text import first_sentence, verdict
 from polarcheck.view.picture_data import Drawn, FindingLocation, FindingPicture, Picture, key_of

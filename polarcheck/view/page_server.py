@@ -22,7 +22,7 @@ from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from typing import Any, NamedTuple
 from urllib.parse import SplitResult, urlsplit
 
-from polarcheck.foundation.errors import OutputError
+from polarcheck.foundation.errors import OutputError, why
 
 #: The most connections at a time that have shown the token, and the most that have not.
 MOST = 64
@@ -209,8 +209,7 @@ class Server:
         try:
             self._server = Connections((ADDRESS, port), handler, failed)
         except (OSError, OverflowError) as error:
-            said = getattr(error, "strerror", None) or error
-            raise OutputError(f"--port {port}: {said}") from None
+            raise OutputError(f"--port {port}: {why(error)}") from None
         self.answers = False
         self.address = f"http://{ADDRESS}:{self._server.server_address[1]}/{token}/"
         self._thread = threading.Thread(target=self._server.serve_forever, args=(0.1,), daemon=True)

@@ -7,9 +7,10 @@ from collections.abc import Iterable, Sequence
 from html import escape
 from typing import TYPE_CHECKING, NamedTuple
 
+from polarcheck.foundation.errors import counted
 from polarcheck.foundation.finding import UNREADABLE
 from polarcheck.program.reading.excerpt import visible
-from polarcheck.reports import SEVERITIES, counted
+from polarcheck.reports import SEVERITIES
 from polarcheck.reports.text import verdict
 from polarcheck.view.plotly_script import FILE_NAME
 

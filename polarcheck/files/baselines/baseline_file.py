@@ -140,11 +140,11 @@ def read(path: Path) -> Contents:
     try:
         data = bounded.read_file(path, _LARGEST, "no baseline is", pipes=True)
     except OSError as error:
-        raise BaselineError(f"{display_path(str(path))}: {error.strerror or error}") from None
+        raise BaselineError(f"{display_path(path)}: {error.strerror or error}") from None
     try:
         return _contents(_as_utf8(data))
     except ValueError as error:
-        raise BaselineError(f"{display_path(str(path))}: {error}") from None
+        raise BaselineError(f"{display_path(path)}: {error}") from None
 
 
 def _as_utf8(data: bytes) -> bytes:

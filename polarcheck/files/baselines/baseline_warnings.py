@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import os
 from collections import Counter
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from polarcheck.files.baselines.baseline import Baseline, Leftover
 from polarcheck.files.baselines.baseline_file import Contents
-from polarcheck.foundation.errors import first_of, suggestion
+from polarcheck.foundation.errors import counted, first_of, suggestion
 from polarcheck.program.reading.files import display_path
 from polarcheck.rules.rule import load_all
 
@@ -27,7 +26,7 @@ def unknown_rules(contents: Contents) -> Iterator[tuple[int, str]]:
 
 def of_contents(path: Path, contents: Contents) -> Iterator[str]:
     """Yield lines on entries of unknown rules, and of the first schema."""
-    name = display_path(os.fspath(path))
+    name = display_path(path)
     unknown: dict[str, list[int]] = {}
     for line, rule in unknown_rules(contents):
         unknown.setdefault(rule, []).append(line)
@@ -40,17 +39,17 @@ def of_contents(path: Path, contents: Contents) -> Iterator[str]:
     old = sum(not entry.places for entry in contents.entries)
     if old:
         yield (
-            f"{name}: {_counted(old, 'line')} of an earlier version of polarcheck, where a finding that is worse now "
+            f"{name}: {counted(old, 'line')} of an earlier version of polarcheck, where a finding that is worse now "
             f"stays silent; `polarcheck baseline update` upgrades {_them(old)}"
         )
 
 
 def of_leftovers(path: Path, baseline: Baseline) -> Iterator[str]:
     """Yield lines on moved files and on known findings that no longer occur."""
-    name = display_path(os.fspath(path))
+    name = display_path(path)
     moved = sorted((old, new) for new, old in baseline.moved.items() if old)
     if moved:
-        were = f"{_counted(len(moved), 'file')} {'was' if len(moved) == 1 else 'were'}"
+        were = f"{counted(len(moved), 'file')} {'was' if len(moved) == 1 else 'were'}"
         named = first_of([f"{old} is {new}" for old, new in moved], _NAMED)
         yield f"{name}: {were} moved: {named}; `polarcheck baseline update` takes the new paths"
     # Unknown rules have a line of their own.
@@ -59,7 +58,7 @@ def of_leftovers(path: Path, baseline: Baseline) -> Iterator[str]:
         count = sum(leftover.missing for leftover in leftovers)
         occur = "occurs" if count == 1 else "occur"
         yield (
-            f"{name}: {_counted(count, 'known finding')} no longer {occur}: {first_of(_places(leftovers), _NAMED)}; "
+            f"{name}: {counted(count, 'known finding')} no longer {occur}: {first_of(_places(leftovers), _NAMED)}; "
             f"`polarcheck baseline prune` drops {_them(count)}"
         )
 
@@ -73,10 +72,6 @@ def _places(leftovers: Iterable[Leftover]) -> list[str]:
             leftover.missing
         )
     return [f"{location} ({count})" if count > 1 else location for location, count in counts.items()]
-
-
-def _counted(count: int, noun: str) -> str:
-    return f"{count} {noun}{'s' * (count != 1)}"
 
 
 def _them(count: int) -> str:

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from msgspec import UnsetType
 
 from polarcheck.files.baselines.baseline_file import Entry, Location
+from polarcheck.foundation.errors import counted
 from polarcheck.foundation.finding import FASTEST, FASTEST_PER_REVOLUTION, LOWEST_Z, SEVERITIES, Finding, Outline
 from polarcheck.rules.rule import Rule, load_all
 
@@ -62,7 +63,7 @@ def _of_kind(entry: Entry, finding: Finding) -> Iterator[str]:
 def _of_numbers(location: Location, finding: Finding, outline: Outline | UnsetType) -> Iterator[str]:
     blocks = blocks_of(finding)
     if location.blocks and blocks > location.blocks:
-        yield f"known in {location.blocks} block{'s' * (location.blocks > 1)}, now in {blocks}"
+        yield f"known in {counted(location.blocks, 'block')}, now in {blocks}"
     now = _numbers(finding, outline)
     for name, value in location.values.items():
         if name not in now:

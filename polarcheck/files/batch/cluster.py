@@ -31,7 +31,7 @@ import msgspec
 from polarcheck.checking.settings import Settings
 from polarcheck.files.batch.executors import Sent, packed
 from polarcheck.files.batch.tasks import Outcome, Task, forget, outcome, unreadable
-from polarcheck.foundation.errors import ClusterError, SourceError
+from polarcheck.foundation.errors import ClusterError, SourceError, why
 from polarcheck.foundation.version import __version__
 from polarcheck.program.execution import called_programs
 from polarcheck.program.reading import files
@@ -127,8 +127,7 @@ def _verify_port(address: str) -> None:
     try:
         socket.create_connection((match[1] or match[2], int(match[3])), _PATIENCE).close()
     except (OSError, OverflowError, UnicodeError) as error:
-        reason = getattr(error, "strerror", None) or error
-        raise ClusterError(f"--cluster {address}: no scheduler answers there: {reason}") from None
+        raise ClusterError(f"--cluster {address}: no scheduler answers there: {why(error)}") from None
 
 
 def in_time(function: Callable[[], Value], seconds: float) -> Value:

@@ -9,6 +9,7 @@ import msgspec
 
 from polarcheck.checking.settings import Settings
 from polarcheck.files.batch.tasks import Task
+from polarcheck.foundation.errors import counted
 from polarcheck.foundation.finding import FileReport
 
 
@@ -39,5 +40,4 @@ def too_many_warnings(reports: Iterable[FileReport], tasks: Iterable[Task]) -> I
             counts[limits[report.path]] += sum(finding.severity == "warning" for finding in report.findings)
     for (source, most), count in counts.items():
         if count > most:
-            warnings = "1 warning" if count == 1 else f"{count} warnings"
-            yield f"{warnings}, more than the {most} of {source}"
+            yield f"{counted(count, 'warning')}, more than the {most} of {source}"

@@ -76,7 +76,7 @@ def decided(
     return Decided(
         machine=display_path(machine),
         changes=options["changes"],
-        baseline=None if baseline is None else display_path(str(baseline)),
+        baseline=None if baseline is None else display_path(baseline),
         configuration=[display_path(path) for path in configuration],
         sources=dict(_sources(options, named, merged)),
         reasons={key: reason for key, reason in reasons.items() if reason},

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
 from polarcheck.foundation import bounded, record
-from polarcheck.foundation.errors import OutputError, SourceError
+from polarcheck.foundation.errors import OutputError, SourceError, why
 from polarcheck.program.reading.file_names import spelled
 
 STANDARD_INPUT = "-"
@@ -56,13 +56,13 @@ def is_standard_input(path: str) -> bool:
     return path in _STANDARD_INPUTS
 
 
-def display_path(path: str) -> str:
+def display_path(path: str | os.PathLike[str]) -> str:
     """
     A path as reports hold it: with slashes, and with the bytes spelled out that are no characters.
 
     No two paths are shown as one.
     """
-    return spelled(path.replace(os.sep, "/"))
+    return spelled(os.fspath(path).replace(os.sep, "/"))
 
 
 class RealPaths:
@@ -159,7 +159,7 @@ def write(
     written.
     """
     if not rewrites and (reason := read_by_this_run(path)):
-        raise OutputError(f"{display_path(str(path))}: {reason}")
+        raise OutputError(f"{display_path(path)}: {reason}")
     data = [text] if isinstance(text, bytes) else _encoded([text] if isinstance(text, str) else text)
     try:
         descriptor = _descriptor(path)
@@ -175,8 +175,7 @@ def write(
         else:
             _replace(Path(os.path.realpath(path)), data, last)
     except (OSError, ValueError) as error:
-        said = getattr(error, "strerror", None) or error
-        raise OutputError(f"{display_path(str(path))}: {said}") from None
+        raise OutputError(f"{display_path(path)}: {why(error)}") from None
 
 
 def read_by_this_run(path: Path) -> str:

@@ -7,7 +7,7 @@ import stat
 import sys
 from pathlib import Path
 
-from polarcheck.foundation.errors import OutputError, SourceError
+from polarcheck.foundation.errors import OutputError, SourceError, why
 from polarcheck.program.reading import files
 
 #: Suffix of the copy of the old program.
@@ -37,7 +37,7 @@ def rewrite(path: str, old: bytes, new: bytes, *, keep: bool = False) -> None:
 
         files.write(target, new, finish, rewrites=True)
     except (OSError, ValueError) as error:
-        raise OutputError(f"{name}: not written: {getattr(error, 'strerror', None) or error}") from None
+        raise OutputError(f"{name}: not written: {why(error)}") from None
 
 
 def _refuse(target: Path, name: str, old: bytes) -> None:
@@ -63,7 +63,7 @@ def _keep(path: Path, name: str, old: bytes, status: os.stat_result) -> None:
         return
     if os.path.lexists(copy):
         raise OutputError(
-            f"{name}: not written: {files.display_path(str(copy))} is there already, and differs; move it away"
+            f"{name}: not written: {files.display_path(copy)} is there already, and differs; move it away"
         )
     files.write(copy, old, lambda written: _hand_over(written, status, name))
 

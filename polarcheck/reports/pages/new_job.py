@@ -8,12 +8,11 @@ from collections.abc import Iterator, Mapping, Sequence
 import msgspec
 
 from polarcheck.checking.survey import StatedOffset, Survey
-from polarcheck.foundation.errors import first_of
+from polarcheck.foundation.errors import counted, first_of
 from polarcheck.foundation.states import MM_PER_INCH
 from polarcheck.program.machines import profiles
 from polarcheck.program.reading import files
 from polarcheck.program.reading.excerpt import shortened, visible
-from polarcheck.reports import counted
 
 SCHEMA_FILE = "polarcheck.schema.json"
 COLUMNS = 100

@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
-from polarcheck.foundation.errors import enumerated, first_of
+from polarcheck.foundation.errors import counted, enumerated, first_of
 from polarcheck.foundation.finding import radius_origin
-from polarcheck.reports import counted
 from polarcheck.rules.quantity import Quantity
 
 if TYPE_CHECKING:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Callable, Iterator
 
+from polarcheck.foundation.errors import counted
 from polarcheck.program.reading.excerpt import cells, visible, without_commands
-from polarcheck.reports import counted
 from polarcheck.rewrite.certify.results import (
     FAIL,
     MISSING,

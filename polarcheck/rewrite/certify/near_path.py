@@ -8,9 +8,8 @@ from typing import NamedTuple
 import msgspec
 import numpy as np
 
-from polarcheck.foundation.errors import TooHardError
+from polarcheck.foundation.errors import TooHardError, counted
 from polarcheck.geometry.comparison.path_deviation import PathDeviation, path_deviation
-from polarcheck.reports import counted
 from polarcheck.rewrite.certify.golden import GoldenTrace, changed_orders
 from polarcheck.rewrite.certify.tool_path import ToolPath, tool_path
 from polarcheck.rewrite.compare.differences import common_pieces, feed_differs
