@@ -291,6 +291,7 @@ ROUNDED = (
 )
 
 
+@pytest.mark.ci
 @looped("control", CONTROLS)
 def test_a_move_that_was_tried_and_what_follows_from_it_fail_no_file(control: str) -> None:
     """A square of 36 mm with corners of R6; one of its moves is in rapid traverse, and the setter answers for it."""

@@ -70,7 +70,7 @@ def test_formats_are_those_of_the_command(samples: None) -> None:
         assert polarcheck.render(report, form) == result.stdout, form
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_check_of_several_processes_is_the_same(samples: None) -> None:
     paths = [Path(name) for name in SAMPLES[:6]]
     assert polarcheck.check(paths, processes=2) == polarcheck.check(paths)

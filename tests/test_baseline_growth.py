@@ -258,6 +258,7 @@ def told_again(rule: Rule, change: Callable[[str], str]) -> list[bool]:
     return told
 
 
+@pytest.mark.ci
 @pytest.mark.one_in(12)
 @pytest.mark.parametrize(
     "rule",

@@ -124,6 +124,7 @@ def test_each_command_has_its_calls() -> None:
     assert set(registered()) == set(CALLS)
 
 
+@pytest.mark.ci
 @pytest.mark.one_in(44)
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize("command", CALLS)

@@ -262,6 +262,7 @@ def test_programs_without_sections_are_compared() -> None:
         assert comparison(TURNING, changed(slip, program=TURNING)).verdict == DIFFERS, slip
 
 
+@pytest.mark.ci
 @looped("words", ["G13.1 M9", "G13.1 G0 Z50.", "G13.1 T0202", "G13.1 S500"])
 @looped("tail", ["G0 X100. Z60.\nM30\n", "M30\n"])
 def test_what_stands_beside_the_end_of_a_section_is_compared(words: str, tail: str) -> None:

@@ -111,6 +111,7 @@ def text_of(outcome: Outcome) -> str:
 # ---- the contour is that of the part ----
 
 
+@pytest.mark.ci
 @pytest.mark.one_in(12)
 @pytest.mark.parametrize(
     ("name", "round_corners"),

@@ -292,6 +292,7 @@ def test_an_open_contour_is_one_pass() -> None:
     assert [one.rule for one in finding.follows] == ["contour-not-closed", "nearly-regular-contour"]
 
 
+@pytest.mark.ci
 def test_infeed_is_a_word_of_one_control() -> None:
     assert not tables_of(GSK_CYCLE, "fanuc")["infeed"].depth.any()
     assert (4, "polar-switch-not-alone") in said(report_of(GSK_CYCLE, "fanuc"))
@@ -453,6 +454,7 @@ def test_a_program_under_its_own_machine_is_left_alone() -> None:
         assert not other(program, name)
 
 
+@pytest.mark.ci
 def test_a_program_that_no_machine_reads_well_gets_no_advice() -> None:
     """All sixteen readings of the arcs of en.cncarea.com fail."""
     program = (

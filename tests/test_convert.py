@@ -180,6 +180,7 @@ def test_the_axes_of_a_plane_stand_together(block: str) -> None:
     assert "X C" not in words
 
 
+@pytest.mark.ci
 @looped(
     ("before", "behind", "x"),
     [
@@ -449,6 +450,7 @@ def test_a_plane_that_lies_otherwise_is_turned() -> None:
     )
 
 
+@pytest.mark.ci
 @looped(
     ("c", "direction", "target", "expected"),
     [
@@ -526,6 +528,7 @@ def _called(target: str, calls: str) -> list[tuple[str, str]]:
     return list(zip(words, said, strict=True))
 
 
+@pytest.mark.ci
 @looped(
     ("target", "calls", "expected"),
     [

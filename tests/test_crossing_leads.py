@@ -19,6 +19,7 @@ def told(lead_in: str, close: str, lead_out: str, machine: str = "fanuc-30i") ->
     return [(finding.rule, finding.line) for finding in report.findings if finding.severity != "note"]
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize("lead_out", ["G1 X-60. C-10.\n", "G1 X20. C-40.\n", "G1 X50.\nX-60. C3.\n"])
 @pytest.mark.parametrize("machine", ["fanuc-30i", "fanuc-16i"])
 def test_a_lead_out_through_the_part_is_told_in_its_block(lead_out: str, machine: str) -> None:

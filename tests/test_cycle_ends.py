@@ -162,6 +162,7 @@ M30
 """
 
 
+@pytest.mark.ci
 @looped(
     "turning",
     [
@@ -186,6 +187,7 @@ def test_what_a_cycle_of_siemens_leaves_of_the_bar_is_not_known(turning: str, st
     assert report_of(program, "siemens-transmit", "8:radius=4,nose=0", job=stock).findings == []
 
 
+@pytest.mark.ci
 def test_the_same_mill_goes_down_into_a_bar_that_no_cycle_has_turned() -> None:
     found = report_of(
         _SIEMENS.format(turning="G0 X66"), "siemens-transmit", "8:radius=4", job={"stock": {"diameter": 62.0}}

@@ -123,6 +123,7 @@ def test_walls_that_end_in_the_air_are_no_ring(curves: list[Wall]) -> None:
     assert widest_gap([np.array(curve) for curve in curves]) is None
 
 
+@pytest.mark.ci
 def test_two_flats_drawn_as_lines_are_judged_as_areas(tmp_path: Path) -> None:
     flat = "G12.1\nG1 G98 C-30. F500\nG42 X{size} C-25. F200\nZ-5.\nC25.\nG40 X60. C30.\nZ2.\nG13.1\n"
     lines = [(12 - 9j, 12 + 9j), (-12 + 9j, -12 - 9j)]

@@ -135,6 +135,7 @@ def pocket(length: float, width: float, radius: float = 6.0) -> Loop:
     return rectangle(length, width, radius, inside=True)
 
 
+@pytest.mark.ci
 @pytest.mark.one_in(3)
 @pytest.mark.parametrize(
     ("rough", "finish", "c", "loss"),
@@ -153,6 +154,7 @@ def test_a_wall_that_is_gone_is_told(rough: Loop, finish: Loop, c: float, loss: 
     assert losses(milled(1, rough), milled(2, finish, c)) == [pytest.approx(loss, abs=0.005)]
 
 
+@pytest.mark.ci
 def test_a_contour_of_another_shape_in_what_is_cleared_is_told() -> None:
     hexagon = section(1, 6, 24.0)
     assert losses(hexagon, milled(2, circle(28))) == [pytest.approx(14 - 12 / math.cos(math.pi / 6), abs=0.005)]

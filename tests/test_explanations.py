@@ -67,7 +67,9 @@ def as_it_is(lines: list[str]) -> list[str]:
 
 
 @pytest.mark.ci
-@looped(("turn", "slip"), [*((as_it_is, slip) for slip in SLIPS), *((mirrored, slip) for slip in OF_ONE_AXIS)])
+@looped(
+    ("turn", "slip"), [*((as_it_is, slip) for slip in SLIPS), *((mirrored, slip) for slip in OF_ONE_AXIS)], one_in=3
+)
 def test_one_finding_in_the_block_says_what_to_write(turn: Turn, slip: Slip) -> None:
     contour, right, wrong, word = slip
     lines = turn([wrong if line == right else line for line in contour])
@@ -78,6 +80,7 @@ def test_one_finding_in_the_block_says_what_to_write(turn: Turn, slip: Slip) -> 
     assert meant in finding.message
 
 
+@pytest.mark.ci
 @looped(("first", "second"), [(SLIPS[1], SLIPS[7]), (SLIPS[3], SLIPS[8])])
 def test_mistakes_in_two_contours_are_two_findings(first: Slip, second: Slip) -> None:
     slipped = [[wrong if line == right else line for line in contour] for contour, right, wrong, _ in (first, second)]
@@ -105,6 +108,7 @@ CHAMFERED = [
 ]
 
 
+@pytest.mark.ci
 @looped(
     ("contour", "right", "wrong", "words"),
     [
@@ -125,6 +129,7 @@ def test_what_no_rule_objects_to_is_told_where_the_rest_shows_it(
     assert abs(found[0].line - text[: text.index("\n" + right[0])].count("\n") - 2) <= 1
 
 
+@pytest.mark.ci
 @looped(
     ("right", "wrong"),
     [("G42 X36. C0 F200", "G42 X3.6 C0 F200"), ("G42 X36. C0 F200", "G42 X46. C0 F200"), ("C0", "X44. C0")],
@@ -152,6 +157,7 @@ MEANT = [
 ]
 
 
+@pytest.mark.ci
 @looped(("section", "rule"), MEANT)
 def test_no_value_is_named_where_nothing_shows_it(section: str, rule: str) -> None:
     text = "T0101\n" + section.replace("/", "\n") + "\nM30\n"
@@ -166,6 +172,7 @@ def test_a_rule_that_is_not_run_explains_nothing() -> None:
     assert finding.message.endswith("difference is allowed")
 
 
+@pytest.mark.ci
 @looped(
     ("contour", "right", "wrong", "line", "words"),
     [
@@ -192,6 +199,7 @@ def test_a_block_elsewhere_is_named_where_all_findings_come_from_it(
     assert finding.line == line
 
 
+@pytest.mark.ci
 @looped(
     ("contour", "right", "wrong", "words"),
     [
@@ -223,6 +231,7 @@ PASSES = [*HEAD, *ROUNDED, "G40 X50. F1500", "Z2.", "Z-8. F300", *ROUNDED, *TAIL
 BARE = [*HEAD[:-1], "X46. C0", HEAD[-1], "X40. F200", *ROUNDED[1:], "X46. F1500", *TAIL[1:]]
 
 
+@pytest.mark.ci
 @looped(
     ("lines", "right", "wrong", "rule", "words"),
     [
@@ -276,6 +285,7 @@ def test_a_ramp_that_leaves_a_pocket_is_wrong_and_not_its_approach() -> None:
     ]
 
 
+@pytest.mark.ci
 def test_g91_that_g90_takes_back_is_missing() -> None:
     of_system_b = [line.replace("U", "X").replace("H", "C") for line in STEPS[2:]]
     sound = [*HEAD, "G42 X40. F200", "G91 C7.", *of_system_b, "G40 G90 X60. F1500", *TAIL[1:]]
@@ -300,6 +310,7 @@ FREE = [
 KEYED = ["G42 X39. C0 F200", "C11.258", "X0 C22.517", "X-35. C12.413", "C-12.413", "X0 C-22.517", "X39. C-11.258", "C0"]
 
 
+@pytest.mark.ci
 @looped(
     ("contour", "right", "wrong", "words"),
     [

@@ -655,6 +655,7 @@ def test_a_read_only_file_is_not_written() -> None:
     Path("a.nc").chmod(0o644)
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize(
     "change", [lambda: make(a__nc=OPEN), lambda: make(a__nc=DASH + "M30\n"), lambda: Path("a.nc").unlink()]
 )
@@ -803,6 +804,7 @@ def test_the_example_of_the_page_is_as_it_is_shown() -> None:
     assert result.exit_code == 1
 
 
+@pytest.mark.ci
 def test_the_report_names_what_unsafe_fixes_have_assumed() -> None:
     program = "O7\nT0101\nG98 G0 X60. C0 Z5.\nG12.1 M8\nG1 G41 X40 F200\nC-10.\nG40 X60.\nG0 Z50.\nM30\n"
     options = "--fix", "--unsafe-fixes", "--tool", "1:radius=4"

@@ -88,6 +88,7 @@ def test_a_feed_that_grows_is_told_again_with_what_is_known_of_it() -> None:
     assert line.endswith("[c-feed-above-limit]")
 
 
+@pytest.mark.ci
 @pytest.mark.one_in(3)
 @pytest.mark.parametrize(
     ("old", "new", "said"),
@@ -142,6 +143,7 @@ def test_what_is_worse_is_neither_new_nor_gone_and_an_update_takes_it() -> None:
     assert told() == []
 
 
+@pytest.mark.ci
 def test_a_finding_that_follows_may_not_grow_under_its_cause() -> None:
     """The numbers of findings that follow are known under their rule."""
     create(a=near_center("400."))
@@ -164,6 +166,7 @@ def test_what_grows_is_a_number_of_the_rule(rule: Any) -> None:
 # ---- another section, another program ----
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize("other", [60, 66], ids=["same contour", "other contour"])
 @pytest.mark.parametrize("more", ["", open_ended(90, SOUND)], ids=["two", "a new one too"])
 def test_a_section_that_is_mended_says_nothing_of_another_one_that_breaks(other: int, more: str) -> None:

@@ -177,7 +177,7 @@ def compare(program: str, twin: str, *tools: str) -> None:
 
 
 @pytest.mark.ci
-@looped("side", ["G42", "", "G41"], one_in=2)
+@looped("side", ["G42", "", "G41"], one_in=5)
 @looped("elements", [SQUARE, OBLIQUE, BESIDE_ARCS, MODAL], ids=["square", "oblique", "arcs", "modal"])
 def test_the_corner_is_the_one_that_is_written_out(elements: list[Element], side: str) -> None:
     start = 20 + 1j
@@ -238,7 +238,7 @@ _ALIKE = [
 
 
 @pytest.mark.ci
-@looped(("contour", "twin"), _ALIKE, ids=map(str, range(len(_ALIKE))))
+@looped(("contour", "twin"), _ALIKE, ids=map(str, range(len(_ALIKE))), one_in=4)
 def test_a_corner_of_each_form_is_the_one_that_is_written_out(contour: str, twin: str | None) -> None:
     if twin is None:
         height, radius = 5.0, 21.0
@@ -303,6 +303,7 @@ def test_a_corner_that_is_not_known_is_not_evaluated(contour: str, reason: str) 
     assert all((shape.needs or "").startswith(expected) for shape in shapes)
 
 
+@pytest.mark.ci
 @looped(
     "contour",
     [

@@ -93,8 +93,7 @@ def assert_same_path(program: str, data: bytes, target: str) -> None:
         assert max(min(distance(point, *move) for move in moves) for point in path_of(first, 1e-9)) < 0.0021
 
 
-@pytest.mark.ci
-@pytest.mark.one_in(9)
+@pytest.mark.nightly
 @pytest.mark.parametrize("target", OTHER_WORDS)
 def test_odd_arcs_are_written_as_what_they_are(target: str) -> None:
     program = of_blocks(*WRITTEN.values())
@@ -102,7 +101,7 @@ def test_odd_arcs_are_written_as_what_they_are(target: str) -> None:
 
 
 @pytest.mark.ci
-@looped("target", ["haas-lathe", "okuma-osp", "siemens-transmit"], one_in=18)
+@looped("target", ["haas-lathe", "okuma-osp", "siemens-transmit"], one_in=5)
 @looped("name", WRITTEN)
 def test_each_odd_arc_is_written_alone(name: str, target: str) -> None:
     program = of_blocks(WRITTEN[name])

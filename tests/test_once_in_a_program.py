@@ -23,6 +23,7 @@ REPEATED = {
 NOT_THERE = (("mazak-eia", "feed per revolution"), ("gsk-988", "a point"))
 
 
+@pytest.mark.ci
 @looped(
     ("control", "name"),
     [(control, name) for control in CONTROLS for name in REPEATED if (control, name) not in NOT_THERE],
@@ -61,6 +62,7 @@ def test_a_cutter_too_large_for_ramps_and_an_arc_is_one_finding() -> None:
     }
 
 
+@pytest.mark.ci
 @looped(
     ("change", "rule", "said"),
     [

@@ -880,6 +880,7 @@ def near(tmp_path: Any, monkeypatch: pytest.MonkeyPatch) -> str:
     return "a.nc"
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize(
     ("options", "counts", "rules"),
     [
@@ -919,6 +920,7 @@ def test_angles_under_the_address_of_another_control_are_named_as_written() -> N
     assert found
 
 
+@pytest.mark.ci
 @looped("scale", [1, 25.4])
 def test_a_wrong_word_in_an_arc_that_ends_right_explains_no_other_arc(scale: float) -> None:
     """The end of an arc with K is where it is meant: what is wrong behind it is wrong itself."""

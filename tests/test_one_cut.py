@@ -61,7 +61,7 @@ def findings_of(section: str, radius: float = 4.0, units: str = "G21") -> list[F
 
 
 @pytest.mark.ci
-@looped("name", SOUND, one_in=9)
+@looped("name", SOUND, one_in=20)
 def test_a_wrong_point_is_one_finding_of_what_is_cut(name: str) -> None:
     assert findings_of(SOUND[name]) == []
     programs = with_wrong_points(SOUND[name])

@@ -186,7 +186,7 @@ def test_the_program_is_sound_and_like_itself(control: str, tmp_path: Path) -> N
 
 
 @pytest.mark.ci
-@looped(("control", "name"), pairs(UNKNOWN), one_in=4)
+@looped(("control", "name"), pairs(UNKNOWN), one_in=11)
 def test_a_value_that_is_not_known_is_known_to_no_command(control: str, name: str, tmp_path: Path) -> None:
     sound, text = program(control), program(control, UNKNOWN[name][control])
     report = report_of(text, control, CUTTER)
@@ -213,7 +213,7 @@ def test_a_value_that_is_not_known_is_known_to_no_command(control: str, name: st
 
 
 @pytest.mark.ci
-@looped(("control", "name"), pairs(ORDERS), one_in=4)
+@looped(("control", "name"), pairs(ORDERS), one_in=11)
 def test_another_order_is_another_program(control: str, name: str, tmp_path: Path) -> None:
     sound, text = program(control), program(control, ORDERS[name][control])
     assert compared(tmp_path, control, sound, text).exit_code == 1
@@ -241,7 +241,7 @@ MISREAD = {
 
 
 @pytest.mark.ci
-@looped(("control", "name"), [*itertools.product(("fanuc-30i", "haas-lathe", "siemens-transmit"), MISREAD)])
+@looped(("control", "name"), [*itertools.product(("fanuc-30i", "haas-lathe", "siemens-transmit"), MISREAD)], one_in=5)
 def test_what_a_control_cannot_read_is_not_compared(control: str, name: str, tmp_path: Path) -> None:
     sound, text = program(control), program(control, MISREAD[name])
     assert report_of(text, control, CUTTER).verdict == "fail"
@@ -262,6 +262,7 @@ UNKNOWN_STATES = {
 }
 
 
+@pytest.mark.ci
 @looped("words", UNKNOWN_STATES)
 def test_a_state_that_is_not_known_is_known_to_no_command(words: str, tmp_path: Path) -> None:
     control, place = "siemens-transmit", UNKNOWN_STATES[words]
@@ -295,6 +296,7 @@ ERRORS = {
 }
 
 
+@pytest.mark.ci
 @looped(("control", "words"), [(control, words) for control, changes in ERRORS.items() for words in changes])
 def test_what_a_check_finds_in_one_of_two_programs_is_not_the_same_metal(
     control: str, words: str, tmp_path: Path
@@ -395,6 +397,7 @@ def test_a_variable_by_its_index_is_the_variable(words: str, verdict: str) -> No
     assert depth in in_one_line(tables_of(text, "okuma-osp", CUTTER))
 
 
+@pytest.mark.ci
 @looped(
     ("control", "place", "words"),
     [
@@ -432,7 +435,7 @@ OF_Z = {
 
 
 @pytest.mark.ci
-@looped("control", OF_Z, one_in=3)
+@looped("control", OF_Z, one_in=4)
 def test_moves_of_z_alone_are_those_of_the_path(control: str, tmp_path: Path) -> None:
     sound, (old, deeper, other_feed, divided) = program(control), OF_Z[control]
     for new, code in ((deeper, 1), (other_feed, 1), (divided, 0)):
@@ -472,6 +475,7 @@ def test_a_lost_point_is_seen_by_all(control: str, name: str, tmp_path: Path) ->
     assert compared(tmp_path, control, sound, text).exit_code == 1
 
 
+@pytest.mark.ci
 @looped("control", CONTROLS)
 def test_what_follows_from_what_is_silenced_is_silenced(control: str) -> None:
     low, high = HEX.index("C10.392"), HEX.index("/G40 X")

@@ -392,6 +392,7 @@ def test_nothing_is_told_but_which_machine_it_is_for(program: str, name: str) ->
     assert len(chosen.findings) > 1
 
 
+@pytest.mark.ci
 @looped(("program", "name"), [(OKUMA, "okuma-osp"), (SIEMENS, "siemens-transmit"), (FAGOR, "fagor-8055t")], one_in=1)
 def test_a_new_job_names_the_same_machine(tmp_path: Path, program: str, name: str) -> None:
     path = tmp_path / "a.nc"

@@ -107,6 +107,7 @@ def pairs(starts: list[complex], moves: Moves) -> list[tuple[complex, complex, c
     return [(begin, *move) for begin, move in zip(starts[:-1], moves, strict=True)]
 
 
+@pytest.mark.ci
 @pytest.mark.one_in(14)
 @pytest.mark.parametrize("inch", [False, True], ids=["mm", "inch"])
 @pytest.mark.parametrize("machine", profiles.names())

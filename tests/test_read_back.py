@@ -180,7 +180,7 @@ FAULTS = [
 CASES = [(name, faults) for name in WORK for faults in (FAULTS[1:8:2] if name == "roll" else FAULTS)]
 
 
-@looped(("name", "faults"), CASES, one_in=7)
+@looped(("name", "faults"), CASES, one_in=13)
 def test_a_rewriter_writes_nothing_where_an_order_a_depth_or_f_is_lost(
     name: str, faults: list[tuple[str, str]], monkeypatch: pytest.MonkeyPatch
 ) -> None:

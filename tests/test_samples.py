@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import msgspec
+import pytest
 from cases import looped
 from programs import ROOT, expected, report_of, said, tables_of, without_expectations
 from syrupy.assertion import SnapshotAssertion
@@ -52,6 +53,7 @@ def test_report_is_the_golden_one(path: Path, name: str, snapshot: SnapshotAsser
     assert msgspec.json.format(msgspec.json.encode(report_of_sample(path))).decode() == snapshot(name=name)
 
 
+@pytest.mark.ci
 @looped(("path", "name"), zip(SAMPLES, NAMES, strict=True))
 def test_tool_center_path_is_the_golden_one(path: Path, name: str, snapshot: SnapshotAssertion) -> None:
     tables = tables_of(path.read_bytes(), **settings(path), path=path.name)
@@ -63,6 +65,7 @@ def test_tool_center_path_is_the_golden_one(path: Path, name: str, snapshot: Sna
 FAULTY = [path for path in SAMPLES if expected(path.read_text("utf-8"))]
 
 
+@pytest.mark.ci
 @looped("path", FAULTY, ids=lambda path: path.relative_to(FOLDER).as_posix(), one_in=12)
 def test_comments_that_expect_something_are_no_part_of_it(path: Path) -> None:
     text = path.read_text("utf-8")

@@ -127,6 +127,7 @@ def test_a_block_that_moves_nothing_is_no_ramp(on: str, off: str, start: str, to
     assert [found for found in report.findings if found.severity != "note"] == []
 
 
+@pytest.mark.ci
 def test_the_move_after_a_standing_block_is_the_ramp() -> None:
     """Of 5 mm along X, in diameters 10 mm, where 6 mm are asked for."""
     program = AROUND.format(start=ON_MM[0], on="G1 X50. F500\nG42 X50. C0\nX40.\n", off="G40 X40.\nX50.\n")
@@ -149,6 +150,7 @@ def test_a_cancel_that_never_comes(off: str, machine: str, severity: str) -> Non
     assert found == [("cancel-shorter-than-radius", severity)]
 
 
+@pytest.mark.ci
 def test_a_cancel_too_short_is_an_error_on_every_control() -> None:
     program = AROUND.format(start=ON_MM[0], on="G1 G42 X40. F50.\n", off="G40 X45.\n")
     for machine in ("fanuc", "gsk-988"):

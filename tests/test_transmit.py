@@ -260,6 +260,7 @@ def test_a_tool_is_taken_in_the_mode_without_compensation(tool: str) -> None:
     assert of_two_tools(tool, "TRAFOOF\nG0 X50\nTRANSMIT\nG0 X30 Y0\nTRAFOOF") == []
 
 
+@pytest.mark.ci
 @looped(
     ("off", "leave", "cancel"),
     [

@@ -50,7 +50,7 @@ INSIDE = [("approach-inside-stock", "error")]
 
 
 @pytest.mark.ci
-@looped("spigot", list(SPIGOTS), one_in=7)
+@looped("spigot", list(SPIGOTS), one_in=18)
 @looped("stock", [{"diameter": 50}, {"diameter": 56, "face": 1}, {"hexagon": 44}, {"diameter": 50, "bore": 8}, {}])
 def test_the_approach_clears_what_was_turned(spigot: str, stock: dict[str, float]) -> None:
     assert told(hexagon(spigot), **stock) == []
@@ -134,6 +134,7 @@ def test_a_flat_that_ends_inside_is_told(after: str) -> None:
     assert told(program.format(c="-2."), 3, diameter=40) == [("pass-ends-inside-bar", "warning")]
 
 
+@pytest.mark.ci
 @looped("far", ["-112.", "112."])
 def test_a_point_far_outside_the_bar_is_told(far: str) -> None:
     """The last word of a flat, of a bar of 46."""
@@ -146,6 +147,7 @@ def test_a_point_far_outside_the_bar_is_told(far: str) -> None:
         assert told(start + flat.format(near=near, side=side, far=far) + end, 3, **stock) == [("cut-in-air", "warning")]
 
 
+@pytest.mark.ci
 def test_a_contour_that_comes_round_ends_inside_the_bar_and_leaves_nothing() -> None:
     """It ends behind its own first cut, nearer to the center than the rim of the bar."""
     contour = (
@@ -186,8 +188,8 @@ def test_sound_programs_that_turn_first_are_told_nothing(seed: int) -> None:
     assert report_words(program) == []
 
 
-@pytest.mark.ci
-@looped("seed", range(40, 400), one_in=180)
+@pytest.mark.nightly
+@looped("seed", range(40, 400))
 def test_more_sound_programs_that_turn_first_are_told_nothing(seed: int) -> None:
     assert report_words(drawn(seed)) == []
 
@@ -198,6 +200,7 @@ def test_a_slip_against_the_metal_is_told(kind: str) -> None:
     assert report_words(next(slip for slip in slips if slip is not None)) != []
 
 
+@pytest.mark.ci
 @looped(
     ("kind", "seed", "rule"),
     [

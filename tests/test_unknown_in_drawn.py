@@ -73,6 +73,7 @@ def test_what_an_unknown_section_would_make_is_no_fault_elsewhere(seed: int, mac
         ), text
 
 
+@pytest.mark.ci
 @looped("seed", range(700), one_in=140)
 def test_a_check_never_passes_and_names_no_other_fault(seed: int) -> None:
     machine, tools, _, changed = programs_of(seed)
@@ -83,7 +84,7 @@ def test_a_check_never_passes_and_names_no_other_fault(seed: int) -> None:
 
 
 @pytest.mark.ci
-@looped("seed", range(120), one_in=50)
+@looped("seed", range(120), one_in=120)
 def test_no_comparison_says_the_same_and_no_rewriter_writes(seed: int, tmp_path: Path) -> None:
     machine, tools, sound, changed = programs_of(seed)
     of_tools = ["--no-config", *(option for tool in tools for option in ("--tool", tool))]

@@ -87,6 +87,7 @@ def hexagon_of(control: str, *changes: tuple[str, str]) -> str:
 OF_SYSTEM_A = ("step of the depth", "G50")
 
 
+@pytest.mark.ci
 @looped(
     ("control", "name"),
     [pair for pair in itertools.product(CONTROLS, UNKNOWN) if pair[0] != "mazak-eia" or pair[1] not in OF_SYSTEM_A],
@@ -100,6 +101,7 @@ def test_a_check_never_passes_and_says_which_variable(control: str, name: str) -
     assert any("#500" in reason or "sets X to a value that is not known" in reason for reason in told)
 
 
+@pytest.mark.ci
 @looped(("control", "name"), [*itertools.product(CONTROLS, HARMLESS)])
 def test_what_no_section_rests_on_has_no_weight(control: str, name: str) -> None:
     report = report_of(hexagon_of(control, HARMLESS[name]), control, CUTTER)
@@ -107,6 +109,7 @@ def test_what_no_section_rests_on_has_no_weight(control: str, name: str) -> None
     assert [entry for entry in report.not_evaluated if entry.matters] == []
 
 
+@pytest.mark.ci
 @looped("name", UNKNOWN)
 def test_with_its_value_the_program_is_judged(name: str) -> None:
     """The values that the words had, or 1 for a code: nothing is left to be told of a variable."""
@@ -138,7 +141,7 @@ OPTIONS = ("--machine", "fanuc-30i", "--tool", CUTTER, "--no-config")
 
 
 @pytest.mark.ci
-@looped("name", UNKNOWN, one_in=4)
+@looped("name", UNKNOWN, one_in=11)
 def test_no_comparison_says_the_same_metal(name: str, tmp_path: Path) -> None:
     program = hexagon(UNKNOWN[name])
     old = write(tmp_path, "old", program)
@@ -156,7 +159,7 @@ def test_no_comparison_says_the_same_metal(name: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.ci
-@looped("name", UNKNOWN)
+@looped("name", UNKNOWN, one_in=5)
 def test_no_rewriter_writes(name: str, tmp_path: Path) -> None:
     file = write(tmp_path, "a", hexagon(UNKNOWN[name]))
     for command in (["unroll", *OPTIONS], ["compensate", "--center", *OPTIONS]):
@@ -181,7 +184,7 @@ def test_a_system_variable_of_another_tool_has_no_weight() -> None:
 
 
 @pytest.mark.ci
-@looped("name", [*BEHIND, *OF_VARIABLES])
+@looped("name", [*BEHIND, *OF_VARIABLES], one_in=5)
 def test_no_comparison_says_the_same_of_two_variables(name: str, tmp_path: Path) -> None:
     program = hexagon({**BEHIND, **OF_VARIABLES}[name])
     old, same = write(tmp_path, "old", program), write(tmp_path, "same", program.replace("M30", "M30 (END)"))
@@ -252,6 +255,7 @@ FLATS = (
 )
 
 
+@pytest.mark.ci
 @looped(("control", "word"), [*itertools.product(("fanuc-30i", "gsk-988", "doosan"), ("C90.", "G13.1"))])
 def test_what_lies_between_two_sections_is_no_fault_of_either(control: str, word: str) -> None:
     engaged = FLATS.replace("G28 H0", "M35/G28 H0") if control == "doosan" else FLATS

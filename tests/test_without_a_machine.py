@@ -57,7 +57,7 @@ def test_one_finding_names_the_machine(name: str, program: str, rule: str) -> No
 
 
 @pytest.mark.ci
-@looped(("name", "program"), [(name, program) for name, program, _ in PROGRAMS], one_in=4)
+@looped(("name", "program"), [(name, program) for name, program, _ in PROGRAMS], one_in=9)
 def test_a_new_job_names_the_same_machine(tmp_path: Path, name: str, program: str) -> None:
     path = tmp_path / "a.nc"
     path.write_text(program)
@@ -66,7 +66,7 @@ def test_a_new_job_names_the_same_machine(tmp_path: Path, name: str, program: st
 
 
 @pytest.mark.ci
-@looped(("name", "program", "rule"), PROGRAMS)
+@looped(("name", "program", "rule"), PROGRAMS, one_in=4)
 def test_a_lathe_that_is_chosen_is_checked_as_such(name: str, program: str, rule: str) -> None:
     of_own, of_default = report_of(program, name), report_of(program, job={"machine": "fanuc"})
     assert rule not in {finding.rule for finding in of_own.findings}

@@ -106,6 +106,7 @@ def test_the_rest_of_the_program_says_what_was_meant(
     assert said(converted) == [(line, rule)]
 
 
+@pytest.mark.ci
 @looped(
     ("program", "before", "after"),
     [
