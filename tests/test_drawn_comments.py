@@ -245,7 +245,7 @@ def test_sizes_in_inch(seed: int) -> None:
         assert bar is not None
         assert bar.diameter == pytest.approx(size)
         hexagon = shape_in(f"HEX {written}{unit} AF", in_inch=True)
-        assert hexagon == ("hexagon", pytest.approx(size), True)
+        assert hexagon == StatedShape("hexagon", pytest.approx(size), True)
     assert bar_in(f"{size / 25.4:.4f} BAR", in_inch=True) is not None or size < 3
 
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from typing import NamedTuple, TypeAlias
+from typing import TypeAlias
 
+import msgspec
 import numpy as np
 
 from polarcheck.checking.not_followed import (
@@ -55,7 +56,7 @@ _LONGEST = 40
 NAMED = 20
 
 
-class Missing(NamedTuple):
+class Missing(msgspec.Struct, frozen=True):
     """
     The blocks in which a rule could not be evaluated, for one cause.
 
@@ -178,7 +179,7 @@ def unexecuted(tables: Tables) -> Iterator[NotEvaluated]:
         yield NotEvaluated(rule="all", reason=reason, blocks=count, matters=False)
 
 
-class UnknownValue(NamedTuple):
+class UnknownValue(msgspec.Struct, frozen=True):
     """
     What rests on a variable without a value.
 

@@ -17,8 +17,7 @@ way, and what C must turn at the center between two moves belongs to neither.
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
@@ -39,7 +38,7 @@ from polarcheck.geometry.plane import (
 from polarcheck.geometry.tolerances import ZERO
 
 
-class CAxis(NamedTuple):
+class CAxis(msgspec.Struct, frozen=True):
     """
     How C stands to the angle of plane points.
 

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from typing import Any, NamedTuple
+from typing import Any
+
+import msgspec
 
 from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.shapes.shape import SAME, Shape
@@ -14,7 +16,7 @@ from polarcheck.parts.depth_areas import are_same
 _WITHOUT_NAME = ("contour", "groove")
 
 
-class Depth(NamedTuple):
+class Depth(msgspec.Struct, frozen=True):
     """
     What sections make at one Z.
 
@@ -58,7 +60,7 @@ def put_together(joined: Depth, single: Sequence[Depth]) -> Iterator[Depth]:
     for shape, sections in zip(joined.shapes, makers, strict=True):
         by_sections.setdefault(sections or rest, []).append(shape)
     for sections, made in sorted(by_sections.items()):
-        yield joined._replace(sections=sections, shapes=made)
+        yield msgspec.structs.replace(joined, sections=sections, shapes=made)
     # Of roughing, for instance, nothing is left.
     used = {number for sections in by_sections for number in sections}
     yield from (depth for depth in single if used.isdisjoint(depth.sections))

@@ -5,8 +5,9 @@ from __future__ import annotations
 import textwrap
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
+import msgspec
 from msgspec import UNSET
 
 from polarcheck.foundation.errors import counted
@@ -34,7 +35,7 @@ _PLACES = 3
 _SENTENCE_END = lazy_pattern(r"(?<!\be\.g\.)(?<!\bi\.e\.)(?<!\bp\.)(?<=[.?!])\s+(?=[A-Z0-9(])")
 
 
-class _Page(NamedTuple):
+class _Page(msgspec.Struct, frozen=True):
     """
     The page that lines are written for.
 

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from itertools import islice
 from typing import NamedTuple
 
+import msgspec
 import numpy as np
 
 from polarcheck.columns.contour.correction import Correction
@@ -177,7 +178,7 @@ class _Search:
             edit = likely.edit
             outline = outlines_of(loop, [edit])
             point, turns, radius, to_center = (part[1] for part in outline)
-            edited = self.loop._replace(turns=turns, radius=radius, to_center=to_center)
+            edited = msgspec.structs.replace(self.loop, turns=turns, radius=radius, to_center=to_center)
             moves_side = not edit.is_of_pen and self._keeps_directions(point)
             slip = Slip(edit.text, edit.why, edit.is_plain and not moves_side, edit.is_common)
             symmetry = edited.symmetry(point)
@@ -358,7 +359,8 @@ class _Search:
     def _with_edge(self, corner: int, turns: int) -> PlaneLoop:
         """The loop with one more line or usual arc behind a block."""
         loop = self.loop
-        return loop._replace(
+        return msgspec.structs.replace(
+            loop,
             turns=np.insert(loop.turns, corner, turns),
             radius=np.insert(loop.radius, corner, self._usual_arc[1] if turns else np.nan),
             to_center=np.insert(loop.to_center, corner, 0),

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
 from polarcheck.columns.contour.passes import LEADS, Passes
 from polarcheck.columns.path.path import NOWHERE
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Columns, Floats, Mask, Points, Rows, cached_property
+from polarcheck.foundation.arrays import Columns, Floats, Mask, Points, Rows, Table, cached_property
 from polarcheck.foundation.states import Motion, Side
 from polarcheck.geometry.plane import angle_between, arc_sweep
 
@@ -29,7 +27,7 @@ _MEETS = 0.1
 _ENDS = 2
 
 
-class _CrossingMoves(NamedTuple):
+class _CrossingMoves(Table, frozen=True):
     """
     Blocks that cross, or run back along, an earlier block of their pass.
 
@@ -50,8 +48,7 @@ class Crossings(Columns, frozen=True):
 
     @cached_property
     def _hits(self) -> _CrossingMoves:
-        parts = [self._turning_back, *self._crossing]
-        return _CrossingMoves(*(np.concatenate(columns) for columns in zip(*parts, strict=True)))
+        return _CrossingMoves.concatenated([self._turning_back, *self._crossing])
 
     @cached_property
     def _turning_back(self) -> _CrossingMoves:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
+import msgspec
 import numpy as np
 
 from polarcheck.columns.contour.passes import Passes, numbered
@@ -28,7 +29,7 @@ _FINE = 4
 _MOST = 12
 
 
-class Difference(NamedTuple):
+class Difference(msgspec.Struct, frozen=True):
     """
     A pass that differs from another one.
 
@@ -44,7 +45,7 @@ class Difference(NamedTuple):
     beside: OddPoint | None = None
 
 
-class _Stretch(NamedTuple):
+class _Stretch(msgspec.Struct, frozen=True):
     """The moves of each pass that are compared: the first and the last one, and a number of their shape."""
 
     first: Rows

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import NamedTuple
 
+import msgspec
 import numpy as np
 
 from polarcheck.columns.trace import Trace
@@ -31,7 +31,7 @@ _TURNED = 3
 _FULL = 6.2
 
 
-class PlaneLoop(NamedTuple):
+class PlaneLoop(msgspec.Struct, frozen=True):
     """
     A path of n blocks at feed in the polar plane, without a ramp or a move of Z in it.
 

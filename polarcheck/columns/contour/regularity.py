@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
+import msgspec
 import numpy as np
 
 from polarcheck.columns.contour.plane_loops import PlaneLoop, loops_of, smooth_share
@@ -28,7 +29,7 @@ _SMOOTH_BY_CHANCE = 0.25
 _FEWEST_PLACES = 4
 
 
-class XReading(NamedTuple):
+class XReading(msgspec.Struct, frozen=True):
     """
     A section that is regular with another reading of X.
 

@@ -7,8 +7,9 @@ where the name says so.
 
 from __future__ import annotations
 
-from typing import Literal, NamedTuple
+from typing import Literal
 
+import msgspec
 import numpy as np
 
 from polarcheck.columns.filling import before, last_row
@@ -26,7 +27,7 @@ _CORNERS = 2 / np.sqrt(3)
 _MOST = 4000
 
 
-class Known(NamedTuple):
+class Known(msgspec.Struct, frozen=True):
     """
     The known sizes of the bar, diameters and lengths in mm.
 
@@ -48,7 +49,7 @@ class Known(NamedTuple):
 _NOTHING = Known(np.nan, np.nan, 0.0, np.nan, "none")
 
 
-class Standing(NamedTuple):
+class Standing(msgspec.Struct, frozen=True):
     """
     What stands of the bar for certain.
 
@@ -61,7 +62,7 @@ class Standing(NamedTuple):
     lines: tuple[int, int]
 
 
-class Turned(NamedTuple):
+class Turned(msgspec.Struct, frozen=True):
     """
     What is left of the bar before a row.
 
@@ -96,7 +97,7 @@ class Bar(Columns, frozen=True):
         unknown = Known(np.nan, np.nan, turned.bore, turned.face, "none", (0, 0), span(turned.face_rows))
         if turned.profile is None:
             largest = 2 * self._of_job.outer
-            return unknown if np.isnan(largest) else unknown._replace(largest=largest, source="job")
+            return unknown if np.isnan(largest) else msgspec.structs.replace(unknown, largest=largest, source="job")
         top = min(turned.face, 0.0) if not np.isnan(turned.face) else 0.0
         deepest = min(self._deepest_cut, top - 2 * ROUNDING)
         smallest, largest, rows = turned.profile.between(deepest, top)
@@ -104,12 +105,13 @@ class Bar(Columns, frozen=True):
         if not (len(rows) or of_job) or smallest <= (0 if of_job else CENTER):
             stated = None if len(rows) or self.trace.job.stock.unknown else self.stated
             return (
-                stated._replace(bore=turned.bore, face=turned.face, face_lines=unknown.face_lines)
+                msgspec.structs.replace(stated, bore=turned.bore, face=turned.face, face_lines=unknown.face_lines)
                 if stated
                 else unknown
             )
         is_turned = (len(rows) > 0 and smallest < self._of_job.inner) or not of_job
-        return unknown._replace(
+        return msgspec.structs.replace(
+            unknown,
             smallest=2 * smallest,
             largest=2 * largest if np.isfinite(largest) else np.nan,
             source="turning" if is_turned else "job",

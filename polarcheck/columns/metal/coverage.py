@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import msgspec
 import numpy as np
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from polarcheck.geometry.segments import Curves, Segments
 
 
-class Left(NamedTuple):
+class Left(msgspec.Struct, frozen=True):
     """
     Material left, by rows of the trace.
 
@@ -59,7 +59,7 @@ def _writable_columns(count: int) -> Left:
     return Left(nothing.height.copy(), nothing.width.copy(), nothing.place.copy())
 
 
-class _CheckedLoops(NamedTuple):
+class _CheckedLoops(msgspec.Struct, frozen=True):
     """
     Loops to check, in the order of their parts, n of them.
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
+import msgspec
 import numpy as np
 
 from polarcheck.columns.contour.overcuts import Overcuts, level_of
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
     from polarcheck.geometry.segments import Curves
 
 
-class Level(NamedTuple):
+class Level(msgspec.Struct, frozen=True):
     """
     The part that the contours at one Z of one section leave standing.
 
@@ -135,11 +136,12 @@ class Finished(Columns, frozen=True):
 
         angle = float(self.trace.path.section_entry[level.section])
         if not self.trace.path.knows_section_entry[level.section]:
-            return level._replace(angle=np.nan)
+            return msgspec.structs.replace(level, angle=np.nan)
         if not angle:
             return level
         turn = np.exp(1j * np.radians(angle))
-        return level._replace(
+        return msgspec.structs.replace(
+            level,
             polygon=turned(level.polygon, float(np.radians(angle))),
             outline=level.outline.turned_by(turn),
             walls=level.walls.turned_by(turn),
@@ -155,7 +157,9 @@ class Finished(Columns, frozen=True):
         (joined,) = self._levels_of(walls, left, np.zeros(len(walls), np.int64))
         sections = tuple(dict.fromkeys(level.section for level in levels))
         alone = joined.tangled or not len(joined.outline)
-        return None if alone else joined._replace(sections=sections, section=sections[0], angle=levels[0].angle)
+        if alone:
+            return None
+        return msgspec.structs.replace(joined, sections=sections, section=sections[0], angle=levels[0].angle)
 
     def _levels_of(self, walls: Curves, material_left: Mask, level: Rows) -> list[Level]:
         if not len(walls):

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
+import msgspec
 import numpy as np
 
 from polarcheck.columns.filling import last_row
@@ -38,7 +39,7 @@ _SHORTEST = 0.5
 _MOST_SECTIONS = 100
 
 
-class PartComment(NamedTuple):
+class PartComment(msgspec.Struct, frozen=True):
     """
     What a comment states, where, and the sections that it speaks of.
 
@@ -63,7 +64,7 @@ class PartComment(NamedTuple):
     of_depth: Sequence[int] = ()
 
 
-class Contradiction(NamedTuple):
+class Contradiction(msgspec.Struct, frozen=True):
     """
     A comment that its sections contradict.
 
@@ -151,7 +152,8 @@ class PartComments(Columns, frozen=True):
         rough = self._rough_sections if with_size else set()
         of_depth = self._nearest([statement for statement in statements if not np.isnan(statement.depth)])
         return [
-            statement._replace(
+            msgspec.structs.replace(
+                statement,
                 of_size=[section for section in of_size.get(statement.comment, []) if section not in rough],
                 of_depth=of_depth.get(statement.comment, []),
             )
@@ -249,7 +251,7 @@ class PartComments(Columns, frozen=True):
 
         of_level = [] if level.tangled else shapes_of(level.outline, level.gap, self.finished.overcuts.bar)
         # The first block of the contour as programmed; a shape may begin with any of its sides.
-        return [shape._replace(row=int(level.walls.row[0])) for shape in of_level]
+        return [msgspec.structs.replace(shape, row=int(level.walls.row[0])) for shape in of_level]
 
     def _sizes(self, comment: PartComment) -> Iterator[Contradiction]:
         overcuts = self.finished.overcuts

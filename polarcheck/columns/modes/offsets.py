@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import NamedTuple
 
+import msgspec
 import numpy as np
 
 from polarcheck.columns.modes.executed_blocks import ExecutedBlocks
@@ -54,7 +54,7 @@ _LONGEST_NUMBER = 1e9
 _LARGEST_X_WEAR = 5.0
 
 
-class _Set(NamedTuple):
+class _Set(msgspec.Struct, frozen=True):
     """The last setting of the offset in force by the program: its row, -1 where there is none, and the value."""
 
     row: Rows

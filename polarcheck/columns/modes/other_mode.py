@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Iterable
-from typing import NamedTuple
 
+import msgspec
 import numpy as np
 
 from polarcheck.columns.filling import happened
@@ -21,7 +21,7 @@ from polarcheck.program.reading.translation import spans
 from polarcheck.program.reading.words import NumberFault, Words
 
 
-class Switch(NamedTuple):
+class Switch(msgspec.Struct, frozen=True):
     """A code or word that begins the mode elsewhere, the rows with it, and the machines that know it."""
 
     name: str

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
+import msgspec
 import numpy as np
 
 from polarcheck.columns.trace import Trace
@@ -17,7 +16,7 @@ _AT_FEED = (Motion.LINE, Motion.CW, Motion.CCW)
 _DIGITS = 4
 
 
-class Slip(NamedTuple):
+class Slip(msgspec.Struct, frozen=True):
     """
     A code in the place of one that switches the mode.
 

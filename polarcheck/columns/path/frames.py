@@ -7,8 +7,6 @@ changes: what is not programmed in the new one stays where it is (as on controls
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import msgspec
 import numpy as np
 
@@ -24,7 +22,7 @@ from polarcheck.foundation.arrays import Floats, Mask, Points, cached_property, 
 _OTHER_PLANES = (18, 19)
 
 
-class FrameWords(NamedTuple):
+class FrameWords(msgspec.Struct, frozen=True):
     """
     Frame words of each row.
 
@@ -137,7 +135,7 @@ def in_frame(
     return coordinate, np.where(moves & ~is_followed, np.nan, steps)
 
 
-class AxisPath(NamedTuple):
+class AxisPath(msgspec.Struct, frozen=True):
     """
     Where an axis is programmed to go, in the coordinates of the lathe but along the axes of the frame.
 
@@ -148,6 +146,10 @@ class AxisPath(NamedTuple):
     increment: Floats
     resets: Mask
     values: Floats
+
+    def positions(self) -> Floats:
+        """The axis after each row."""
+        return positions(self.absolute, self.increment, self.resets, self.values)
 
 
 def along(linear: AxisPath, virtual: AxisPath, turn: Points) -> Points:

@@ -19,8 +19,7 @@ A pass that runs along arcs or corners into which R and its offset together do n
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
+import msgspec
 import numpy as np
 from msgspec.structs import replace
 
@@ -40,7 +39,7 @@ MOST_MOVES = 200_000
 CUT = 1e-6
 
 
-class _Cycle(NamedTuple):
+class _Cycle(msgspec.Struct, frozen=True):
     """
     The simulated passes of one cycle.
 

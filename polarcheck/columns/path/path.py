@@ -268,12 +268,12 @@ class ProgrammedPath(Columns, frozen=True):
 
     def _virtual(self, words: AxisPath) -> Floats:
         """The virtual axis after each row where no frame turns it; NaN outside the mode."""
-        return np.where(self.mode.section >= 0, positions(*words), np.nan)
+        return np.where(self.mode.section >= 0, words.positions(), np.nan)
 
     def _both(self, x_words: AxisPath, c_words: AxisPath, alone: Floats | None) -> tuple[Floats, Floats]:
         """The linear and the virtual axis after each row; alone: the latter without frames, where it is known."""
         if self.frames is None or not np.any((self.frames.angle != 0) & self.mode.in_polar):
-            return positions(*x_words), self._virtual(c_words) if alone is None else alone
+            return x_words.positions(), self._virtual(c_words) if alone is None else alone
         point = along(x_words, c_words, np.where(self.mode.in_polar, self.frames.turn, 1.0))
         return point.real, np.where(self.mode.section >= 0, point.imag, np.nan)
 

@@ -5,8 +5,6 @@ turning of the C axis.
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import msgspec
 import numpy as np
 
@@ -23,7 +21,7 @@ from polarcheck.geometry.tolerances import SHARE
 _SURELY = 7 / 8
 
 
-class OtherRadius(NamedTuple):
+class OtherRadius(msgspec.Struct, frozen=True):
     """
     Another R for some of the rows.
 

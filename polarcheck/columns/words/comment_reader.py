@@ -5,7 +5,8 @@ from __future__ import annotations
 import itertools
 import re
 from collections.abc import Iterator
-from typing import NamedTuple
+
+import msgspec
 
 from polarcheck.columns.words.comment_patterns import (
     ACROSS_FLATS,
@@ -57,14 +58,14 @@ def tolerance_of(size: float) -> float:
     return max(_TOLERANCE, _TOLERANCE_SHARE * size)
 
 
-class StatedBar(NamedTuple):
+class StatedBar(msgspec.Struct, frozen=True):
     """A bar: its diameter, or the distance across the flats of a hexagon [mm]; NaN for the other of the two."""
 
     diameter: float
     across_flats: float
 
 
-class StatedShape(NamedTuple):
+class StatedShape(msgspec.Struct, frozen=True):
     """
     A shape and its size in a comment.
 

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
+import msgspec
 import numpy as np
 
 from polarcheck.columns.modes.executed_blocks import ExecutedBlocks
@@ -14,7 +13,7 @@ from polarcheck.foundation.arrays import Columns, Floats, Rows, cached_property,
 from polarcheck.program.execution.run import Run
 
 
-class StockComment(NamedTuple):
+class StockComment(msgspec.Struct, frozen=True):
     """
     A comment that states the bar of a program.
 
@@ -49,7 +48,9 @@ class StockComments(Columns, frozen=True):
             if bar is not None:
                 line = int(text.blocks.line[text.comments.block[comment.number]])
                 program = int(self.blocks.program[comment.row])
-                stated.append(StockComment(program, comment.number, line, *bar, comment.written.strip()))
+                stated.append(
+                    StockComment(program, comment.number, line, bar.diameter, bar.across_flats, comment.written.strip())
+                )
         return stated
 
     @cached_property

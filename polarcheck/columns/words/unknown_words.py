@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import NamedTuple
 
+import msgspec
 import numpy as np
 
 from polarcheck.columns.filling import fill_down
@@ -20,7 +20,7 @@ from polarcheck.program.machines.code_lists import FRAME_LISTS
 _HARMLESS = tuple("SPNO/")
 
 
-class UnknownItem(NamedTuple):
+class UnknownItem(msgspec.Struct, frozen=True):
     """
     A word of unknown value, or a block that sets an offset to one.
 

@@ -50,7 +50,7 @@ def depth_inside(
     """
     loops = different(loop)
     if known is not None and known.closes(loops):
-        loops, part = known
+        loops, part = known.loop, known.part
     else:
         half = np.full(len(loops), gap / 2)
         part = finished_parts(Contours(contour, left, loops, np.arange(len(loops)), half, np.nan, tolerance))

@@ -13,8 +13,6 @@ bar. The part is unknown there unless the bar is known.
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import msgspec
 import numpy as np
 import shapely  # type: ignore[import-untyped]
@@ -89,7 +87,7 @@ class FinishedParts(msgspec.Struct, frozen=True):
     pitch: float
 
 
-class PartsOfLoops(NamedTuple):
+class PartsOfLoops(msgspec.Struct, frozen=True):
     """The finished part of each of these loops, rising; its group is the number of the loop among them."""
 
     loop: Rows

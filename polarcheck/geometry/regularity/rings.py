@@ -8,8 +8,8 @@ Plane points complex, x + 1j*c [mm]. The bulge of an edge is the tangent of a qu
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import NamedTuple
 
+import msgspec
 import numpy as np
 
 from polarcheck.foundation.arrays import Floats, Mask, Points
@@ -22,7 +22,7 @@ _LEADS, _MOST_RINGS = 8, 3
 _FEWEST = 3
 
 
-class Ring(NamedTuple):
+class Ring(msgspec.Struct, frozen=True):
     """
     A closed contour of n corners.
 

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
+import msgspec
 import numpy as np
 
 from polarcheck.foundation.arrays import Floats, Points, Rows
@@ -15,7 +14,7 @@ _STEP, _ALIGNED = np.pi / 12, 0.002
 _FLAT = 1e-3
 
 
-class Symmetry(NamedTuple):
+class Symmetry(msgspec.Struct, frozen=True):
     """
     The symmetry of a ring of n corners.
 
@@ -76,7 +75,7 @@ def symmetry_of(ring: Ring, tolerance: float) -> Symmetry:
     else:
         freedom = 2 * count
     symmetry = Symmetry(order, is_mirrored, freedom, count, arcs, ring.turns_at_start)
-    return symmetry._replace(freedom=freedom + -(-arcs // symmetry.images))
+    return msgspec.structs.replace(symmetry, freedom=freedom + -(-arcs // symmetry.images))
 
 
 def _is_flat(ring: Ring) -> bool:

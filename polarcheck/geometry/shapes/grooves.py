@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import msgspec
 import numpy as np
 
 from polarcheck.geometry.outline import Outline
@@ -36,7 +37,7 @@ def _around(shape: Shape, inside: int, count: int) -> Shape:
     """A shape without a name, with the number of pieces that stand within it, if no other area may hold them."""
     if shape.name != "contour" or not inside or count > 1:
         return shape
-    return shape._replace(values={**shape.values, "stands_inside": float(inside)})
+    return msgspec.structs.replace(shape, values={**shape.values, "stands_inside": float(inside)})
 
 
 def _groove(ring: Ring, radius: float, inner: float) -> Shape:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import NamedTuple
 
+import msgspec
 import numpy as np
 from msgspec.structs import replace
 
@@ -18,7 +18,7 @@ _TOUCHES = 3 * SAME
 _WIDEST = 0.9
 
 
-class _Keyway(NamedTuple):
+class _Keyway(msgspec.Struct, frozen=True):
     """
     A keyway in a circle, or a key that stands out of it.
 

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
+import msgspec
 import numpy as np
 
 from polarcheck.foundation.arrays import Floats, Mask, Points, median
@@ -22,7 +21,7 @@ _MIXED = (2.0, 0.5)
 _IN_PLACE = 0.02
 
 
-class _Fit(NamedTuple):
+class _Fit(msgspec.Struct, frozen=True):
     """A regular polygon laid through sides: its middle, the distance of its sides, the direction of the first [rad]."""
 
     center: complex

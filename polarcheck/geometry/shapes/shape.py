@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import cmath
 import math
-from typing import NamedTuple
+
+import msgspec
 
 from polarcheck.foundation.arrays import Floats, Points
 
@@ -27,14 +28,14 @@ POLYGONS = {
 }
 
 
-class OddSide(NamedTuple):
+class OddSide(msgspec.Struct, frozen=True):
     """A side that differs from the others: the row of its block and its size as it is told of the others [mm]."""
 
     row: int
     size: float
 
 
-class Shape(NamedTuple):
+class Shape(msgspec.Struct, frozen=True):
     """
     What one outline is.
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+import msgspec
 import numpy as np
 
 from polarcheck.foundation.arrays import Mask
@@ -44,7 +45,7 @@ def shapes_of_rings(rings: Iterable[Ring], bar: float = np.nan) -> list[Shape]:
         single = [ring for ring in chains if len(ring) == 1]
         remaining = [*(ring for ring in chains if len(ring) > 1), *remaining]
     beyond = _beyond(min((ring.beyond for ring in single), default=np.inf))
-    flats = [shape._replace(values=shape.values | beyond) for shape in flats_of(single)]
+    flats = [msgspec.structs.replace(shape, values=shape.values | beyond) for shape in flats_of(single)]
     return flats + [_shape_of(ring) for ring in remaining]
 
 
@@ -56,7 +57,7 @@ def _shape_of(ring: Ring) -> Shape:
         corners["inside_corners"] = float(np.count_nonzero(sharp))
         fits = _fits_corners(ring, sharp)
         corners |= {"corner_reach": fits} if np.isfinite(fits) else {}
-    return shape._replace(values=shape.values | corners)
+    return msgspec.structs.replace(shape, values=shape.values | corners)
 
 
 def _is_of_flats(ring: Ring) -> bool:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import NamedTuple
 
 import msgspec
 import numpy as np
@@ -67,7 +66,7 @@ class Assigned(msgspec.Struct, frozen=True):
         return f"#{self.variable}"
 
 
-class ValueSet(NamedTuple):
+class ValueSet(msgspec.Struct, frozen=True):
     """
     A variable that has got a value.
 
@@ -180,7 +179,7 @@ def with_rows_behind(run: Run, rows: Rows) -> Run:
         faults=tuple(msgspec.structs.replace(fault, row=moved(fault.row)) for fault in run.faults),
         assigned={moved(row): assigned for row, assigned in run.assigned.items()},
         broken_off=None if run.broken_off is None else np.insert(run.broken_off, behind, False),
-        values=[value._replace(row=moved(value.row)) for value in run.values],
+        values=[msgspec.structs.replace(value, row=moved(value.row)) for value in run.values],
     )
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 import msgspec
 import numpy as np
@@ -17,7 +17,7 @@ from polarcheck.rules.wording.part import Sizes
 _IN_COMMON = 0.25
 
 
-class Area(NamedTuple):
+class Area(msgspec.Struct, frozen=True):
     """The area that stands at one depth, or that is cleared there: its Z [mm], and the polygon (shapely, mm)."""
 
     z: float

@@ -216,7 +216,7 @@ def level_in_words(trace: Trace, level: Level) -> str:
     """The shapes of a level of one section in words, in the frame of the part and the units of the program."""
     turn = complex(trace.path.section_turn[level.section])
     if not level.angle and turn != 1:
-        level = level._replace(outline=level.outline.turned_by(turn))
+        level = msgspec.structs.replace(level, outline=level.outline.turned_by(turn))
     depth = Depth(level.sections, level.z, level.radius, shapes_of_level(trace, level))
     return "; ".join(_words(trace, shape, depth) for shape in depth.shapes)
 

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import NamedTuple
+
+import msgspec
 
 from polarcheck.foundation.errors import enumerated
 from polarcheck.foundation.states import MM_PER_INCH
 from polarcheck.geometry.shapes.shape import SAME, Shape
 
 
-class Sizes(NamedTuple):
+class Sizes(msgspec.Struct, frozen=True):
     """How lengths are shown: in inch, with four digits behind the point, or in mm with three."""
 
     inch: bool
@@ -26,7 +27,7 @@ class Sizes(NamedTuple):
         return f"{value / MM_PER_INCH**2:.4f} inch2" if self.inch else f"{value:.1f} mm2"
 
 
-class Manner(NamedTuple):
+class Manner(msgspec.Struct, frozen=True):
     """
     How a shape is told.
 
