@@ -28,8 +28,6 @@ _LEAST, _FEWEST = 3, 2
 _SKIPPED = 1.5
 #: More than any sum of sines: below its negative are the numbers of passes that share no point.
 _ALONE = 1e6
-#: More than any coordinate in units of the distance below.
-_BEYOND_ALL = 1 << 32
 #: Points that are nearer than this are one [mm].
 _SAME = 2e-3
 #: A depth is far below the turning if it is as many times as deep, and steep if it is as many times the cutter's width.
@@ -72,9 +70,7 @@ class PassDepths(Columns, frozen=True):
         if len(first) < _FEWEST:
             return Passes(rows[first], z[first], *np.zeros((2, len(first)), np.int64))
         number = np.repeat(np.arange(len(first)), np.diff(np.append(first, len(rows))))
-        end = trace.path.end[rows]
-        x, c = (np.rint(part / _SAME / 4).astype(np.int64) for part in (end.real, end.imag))
-        point = first_of_each(x * _BEYOND_ALL + c)[1]
+        point = first_of_each(np.rint(trace.path.end[rows] / _SAME / 4))[1]
         contour = _shapes(number, first_of_each(point * (section.max() + 1) + section)[1])
         return Passes(rows[first], z[first], contour, _shapes(number, point))
 
