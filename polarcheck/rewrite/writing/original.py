@@ -47,7 +47,7 @@ def read(path: str, data: bytes, settings: Settings) -> Original:
 
     Raises SourceError, TooHardError; RefusedError for a file with several channels, which wait for each other, and for
     one that runs otherwise with block skip, since one result cannot be both; and where a section rests on a variable
-    without a value, or a condition, a call or a return does, so that nobody knows which blocks run.
+    without a value, or a condition, a call or a return in the mode does, so that nobody knows which blocks run.
     """
     runs = check.read(data, settings.machine, settings.job, path, settings.encoding)
     if len({tables["text"].source.channel for _, tables in runs}) > 1:
@@ -61,7 +61,14 @@ def read(path: str, data: bytes, settings: Settings) -> Original:
     if any(value.matters for value in unknown_values(tables)):
         raise RefusedError(original.unknown)
     machine, lines = settings.machine, tables["text"].blocks.line
-    not_known = [remark for remark in original.trace.run.remarks if remark.kind in BLOCKS_NOT_KNOWN]
+    trace = original.trace
+    # A main program that jumps back out of the mode begins anew: what runs is the same blocks again.
+    is_left_on = len(trace) > 0 and bool(trace.mode.in_polar[-1])
+    not_known = [
+        remark
+        for remark in trace.run.remarks
+        if remark.kind in BLOCKS_NOT_KNOWN and (is_left_on or remark.kind != "return-jumps")
+    ]
     if not_known:
         raise RefusedError([Refusal(int(lines[remark.block]), reason_of(remark, machine)) for remark in not_known])
     return original
