@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import tracemalloc
+
 import pytest
 from programs import report_of
 
@@ -125,3 +127,14 @@ def test_a_place_off_the_polygon_of_the_others_is_told(written: str, how: str) -
 def test_places_that_are_meant_are_told_nothing(old: str, new: str) -> None:
     """One hole of six at 57.27 deg keys the part, and one lies 0.4 farther out."""
     assert told(six_holes(old, new)) == []
+
+
+def test_thousands_of_places_are_no_pattern() -> None:
+    """Each of 4,000 places beside each other would be 256 MB."""
+    cuts = "".join(f"G1 X{20 + number / 100:.2f} C{number % 7}. F1500\nZ-4. F50\nZ2.\n" for number in range(4000))
+    tracemalloc.start()
+    try:
+        assert told(f"O1\nG21 G98 G40\nT0808\nG0 X50. C0 Z2.\nG12.1\n{cuts}G13.1\nM30\n") == []
+        assert tracemalloc.get_traced_memory()[1] < 100e6
+    finally:
+        tracemalloc.stop()

@@ -22,19 +22,19 @@ _FEWEST, _MOST = 4, 36
 
 def misplaced(trace: Trace, rows: Rows) -> Iterator[Correction]:
     """The corrections of places where a tool goes down without compensation, which are these rows; one a section."""
-    section = trace.mode.section[rows]
-    for number in different(section).tolist():
-        yield from _of_section(trace, rows[section == number])
+    for of_section in np.split(rows, np.flatnonzero(np.diff(trace.mode.section[rows])) + 1):
+        yield from _of_section(trace, of_section)
 
 
 def _of_section(trace: Trace, rows: Rows) -> Iterator[Correction]:
-    if len(rows) < _FEWEST:
+    place = trace.path.end[rows]
+    written = different(place)
+    if not _FEWEST <= len(written) <= _MOST:
         return
     tolerance = same_place(complex(half_of_last_digit(trace)[rows[0]]))
-    place = trace.path.end[rows]
-    places = each_once(place, tolerance)
+    places = each_once(written, tolerance)
     visits = np.count_nonzero(np.abs(place[:, None] - places) <= tolerance, axis=0)
-    if not _FEWEST <= len(places) <= _MOST or visits.min() != visits.max():
+    if len(places) < _FEWEST or visits.min() != visits.max():
         return
     for polygon in regular_polygons(places, tolerance, 1, _FEWEST):
         free, odd = polygon[is_lonely(polygon, places, tolerance)], places[is_lonely(places, polygon, tolerance)]
