@@ -30,7 +30,7 @@ from polarcheck.columns.filling import before
 from polarcheck.columns.trace import Trace
 from polarcheck.columns.words.macro_faults import ENDLESS_LOOP, Faults, reason_of
 from polarcheck.columns.words.unknown_words import UnknownItem, UnknownWords
-from polarcheck.foundation.arrays import Floats, Mask, Rows, first_of_each, side_by_side
+from polarcheck.foundation.arrays import Floats, Mask, Rows, first_in_run, first_of_each, side_by_side
 from polarcheck.foundation.errors import TooHardError
 from polarcheck.foundation.finding import Finding, NotEvaluated, Undecided
 from polarcheck.geometry.tolerances import CHORDS, CROSSINGS, FARTHEST
@@ -294,7 +294,7 @@ def _unknown_columns(tables: Tables, rule: Rule) -> Iterator[Missing]:
 
 def _groups(values: Rows) -> tuple[Rows, Rows]:
     """Return the first index and the count of each value, by rising value; most stand beside their equals."""
-    begins = np.flatnonzero(np.diff(values, prepend=values[:1] - 1))
+    begins = np.flatnonzero(first_in_run(values))
     first, number = first_of_each(values[begins])
     return begins[first], np.bincount(number, np.diff(np.append(begins, len(values)))).astype(np.int64)
 

@@ -149,7 +149,7 @@ def folded(fold: np.ufunc, group: Rows, values: NDArray[_Number], count: int, no
     none: the value that the fold begins with, and that of a group without values.
     """
     result = np.full(count, none, values.dtype)
-    first = np.flatnonzero(np.diff(group, prepend=group[:1] - 1))
+    first = np.flatnonzero(first_in_run(group))
     if len(first):
         fold.at(result, group[first], fold.reduceat(values, first))
     return result

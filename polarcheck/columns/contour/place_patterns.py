@@ -11,7 +11,7 @@ from polarcheck.columns.contour.written_loop import axis_words
 from polarcheck.columns.trace import Trace
 from polarcheck.columns.words.last_digit import half_of_last_digit, same_place
 from polarcheck.columns.words.slips import WORD, plain_number, slip_of
-from polarcheck.foundation.arrays import Points, Rows, different
+from polarcheck.foundation.arrays import Points, Rows, different, first_in_run
 from polarcheck.foundation.states import Side
 from polarcheck.geometry.regularity.symmetric_corners import each_once, is_lonely, regular_polygons
 from polarcheck.geometry.tolerances import ROUNDING
@@ -22,7 +22,7 @@ _FEWEST, _MOST = 4, 36
 
 def misplaced(trace: Trace, rows: Rows) -> Iterator[Correction]:
     """The corrections of places where a tool goes down without compensation, which are these rows; one a section."""
-    for of_section in np.split(rows, np.flatnonzero(np.diff(trace.mode.section[rows])) + 1):
+    for of_section in np.split(rows, np.flatnonzero(first_in_run(trace.mode.section[rows]))[1:]):
         yield from _of_section(trace, of_section)
 
 
