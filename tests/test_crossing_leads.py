@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import cmath
+import math
+
 import pytest
 from programs import report_of
 
@@ -71,3 +74,16 @@ G13.1
 M30
 """
     assert report_of(text, "mazak-eia", "9:radius=2.5").findings == []
+
+
+@pytest.mark.parametrize("degrees", [0, 45, 70])
+@pytest.mark.parametrize("side", [1, -1])
+def test_sides_that_run_on_beyond_the_corner_where_they_meet_cross_nothing(side: int, degrees: int) -> None:
+    octagon = [cmath.rect(15 / math.cos(math.pi / 8), math.radians(45 * k - 22.5)) for k in range(9)]
+    path = [35 - 15j, 15 - 11.2j, *octagon[1:], 18.106 - 3.107j, 35 - 3.107j]
+    turned = [point * cmath.rect(1, math.radians(degrees)) for point in path]
+    start, *moves, end = [f"X{2 * point.real:.3f} C{side * point.imag:.3f}" for point in turned]
+    blocks = ["O1", "G21 G98 G40 T0808", "G0 X80. C0 Z2.", "G12.1", f"G1 {start} F1500", "Z-4."]
+    blocks += [f"G{42 if side > 0 else 41} {moves[0]} F250", *moves[1:], f"G40 {end}", "Z2.", "G13.1", "M30"]
+    for radius in (2, 6):
+        assert report_of("\n".join(blocks), "fanuc-30i", f"8:radius={radius}").findings == []

@@ -111,11 +111,12 @@ class Crossings(Columns, frozen=True):
         if passes.closed[which]:
             rings = passes.in_ring[earlier].astype(int) + passes.in_ring[later]
             keep &= (rings == 2) | ((rings == 1) & self._is_outer[which])
-            # Leads meet the ring where it begins, and may themselves be closed.
+            # Leads meet the ring where it begins or ends, be that within a line, and may themselves be closed.
             is_end = (earlier - first <= LEADS) & (last - later <= LEADS)
-            ends = (np.stack((passes.start[of], passes.end[of])) for of in (earlier, later))
-            meets = [np.abs(points - crossing.place).min(axis=0) <= _MEETS for points in ends]
-            keep &= ~(is_end & meets[0] & meets[1])
+            of_ring = np.array([passes.start[passes.ring[0][which]], passes.end[passes.ring[1][which]]])
+            ends = [np.stack((passes.start[of], passes.end[of])) for of in (earlier, later)]
+            at = [np.abs(points - crossing.place).min(axis=0) <= _MEETS for points in (of_ring[:, None], *ends)]
+            keep &= ~(is_end & (at[0] | at[1] & at[2]))
         else:
             keep &= (earlier >= first + _ENDS) & (later <= last - _ENDS)
         if not keep.any():
