@@ -16,8 +16,9 @@ from polarcheck.geometry.regularity.coincidences import Outlines
 
 #: Numbers of a contour; smaller ones are 0, or nobody can tell.
 _LEAST, _GREATEST = 0.02, 2000.0
-#: Numbers that differ by less are one; a number that is calculated is off by so many last digits of what is written.
-_SAME_NUMBER, _STEPS = 5e-5, 1.5
+#: Numbers that differ by less are one; a number that is calculated is off by so many last digits of what is written,
+#: of which none is coarser than that of so many decimals.
+_SAME_NUMBER, _STEPS, _COARSEST = 5e-5, 1.5, 2
 #: By how much an edit is less likely, as a number of coordinates that are as they are by chance: a slip that is seldom
 #: made, a number of another block, a word or block that is missing or too many, another sense, a number with more
 #: decimals than what is written, one of a block that is not beside it, and one that is nearly that of another block.
@@ -223,7 +224,7 @@ def _numbers(
     is_beside = any(abs(number - value) < _SAME_NUMBER for number in beside)
     why = "it is that of the block beside it" if is_beside else _IS_ANGLE if is_angle else "another number is meant"
     of_others = Slip("", why, False)
-    step = _STEPS * 10.0 ** -_decimals(written)
+    step = _STEPS * 10.0 ** -max(_decimals(written), _COARSEST)
     of_pen = list(slips_of(written))
     exact = {_key(slip.text) for slip in of_pen}
     # A number that one slip writes exactly is none that another one writes but for rounding, and nobody rounds to 0.

@@ -10,7 +10,7 @@ from polarcheck.foundation.arrays import Floats, Points, Rows, folded
 #: Nobody means a coarser digit than this many least increments: X20. is 20, and no number between 19.5 and 20.5.
 _COARSEST = 10
 #: Least and greatest distance that counts as the same place [mm], in halves of the last digit.
-_SAME, _SAME_AT_MOST, _DIGITS = 0.01, 0.03, 5
+_SAME, _SAME_AT_MOST, _DIGITS = 0.005, 0.03, 5
 
 
 def half_of_last_digit(trace: Trace) -> Points:
