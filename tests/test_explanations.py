@@ -385,6 +385,58 @@ def test_a_number_as_another_block_has_it_is_meant_and_none_that_is_nearly_that(
     assert "a digit is wrong: with C8.66" in finding.message
 
 
+def test_what_stands_otherwise_in_another_pass_explains_what_follows_from_it() -> None:
+    sides = [
+        *("C8.733", "G3 X26.732 C11.467 I-3.5 J0", "G1 X6.122 C19.707", "G3 X-0.093 C19.719 I-1.561 J-1.953"),
+        *("G1 X-28.788 C8.424", "C-9.591", "X3.604 C-22.829", "X29.361 C-10.983", "C-0.576"),
+    ]
+    contour = ["X63.36 C-3.576", "Z-3. F300", "G42 X29.361 C-0.576 F150", *sides, "G40 X63.361 F1500", "Z2."]
+    passes = [*HEAD[:4], "G1 X65. F1500", *contour, *contour, *TAIL[2:]]
+    assert report_of("\n".join(passes), "fanuc-30i", "1:radius=6").findings == []
+    last = len(passes) - 1 - passes[::-1].index("G1 X6.122 C19.707")
+    passes[last] = "G1 C19.707"
+    (finding,) = report_of("\n".join(passes), "fanuc-30i", "1:radius=6").findings
+    assert (finding.rule, finding.line) == ("passes-differ", last + 1)
+    assert [one.rule for one in finding.follows] == ["arc-end-off-circle"]
+
+
+def test_a_code_that_one_of_the_passes_lacks_is_told_once() -> None:
+    pocket = ["G0 X50. C0", "G12.1", "G1 Z-4. F300", *ROUNDED, "G40 X50. F1500", "Z2.", "G13.1"]
+    lines = [
+        "O1",
+        "T0101",
+        "G98 G0 Z2.",
+        *(line for turn in (0, 120, 240) for line in (f"G0 C{turn}.", "G0 H0", *pocket)),
+    ]
+    text = "\n".join([*lines, "M30"])
+    sound = report_of(text, "fanuc-30i", "1:radius=2").findings
+    second = text.index("G40", text.index("G40") + 1)
+    found = report_of(text[:second] + text[second + 4 :], "fanuc-30i", "1:radius=2").findings
+    assert [one.rule for one in found if one not in sound] == ["passes-differ"]
+    assert "polar-switched-in-offset-mode" in [one.rule for one in found[0].follows]
+
+
+def test_a_ramp_that_is_skipped_is_told_by_its_sign_of_block_skip() -> None:
+    hexagon = ["C11.547", "X0 C23.094", "X-40. C11.547", "C-11.547", "X0 C-23.094", "X40. C-11.547", "C0"]
+    contour = ["Z-4. F300", "G42 X40. F200", *hexagon, "G40 X60. F1500", "Z2."]
+    lines = [*HEAD[:4], "G1 X60. F1500", *contour, "X60. C0", *contour, *TAIL[2:]]
+    ramp = len(lines) - 1 - lines[::-1].index("G42 X40. F200")
+    lines[ramp] = "/" + lines[ramp]
+    (finding,) = report_of("\n".join(lines), "fanuc-30i", "1:radius=2").findings
+    assert f"without the / of line {ramp + 1}" in finding.message
+    assert "cancel-without-start-up" in [one.rule for one in finding.follows]
+
+
+def test_a_limit_that_is_only_noted_leads_no_finding() -> None:
+    slot = ["G41 X42.862 F75", "H4.762", "G2 U-12.7 H6.35 I-6.35 J0", "U-12.7 H-6.35 I0 J-6.35", "G1 H-9.524"]
+    slot += ["G3 U12.7 H-6.35 I6.35 J0", "U12.7 H6.35 I0 J6.35", "G1 H4.762", "G40 X31.836 F800"]
+    lines = ["O1", "T0101", "G98 G0 X31.836 Z2. C0", "G12.1", "G1 Z-6. F40", *slot, *TAIL[1:]]
+    findings = report_of("\n".join(lines), "colchester", "1:radius=4.762").findings
+    (finding,) = (finding for finding in findings if finding.severity != "note")
+    assert (finding.rule, finding.line) == ("nearly-regular-contour", lines.index(slot[2]) + 1)
+    assert "with G3" in finding.message
+
+
 def test_what_an_arc_that_is_none_has_hidden_is_no_reason_against_what_mends_it() -> None:
     """A ramp of a tenth and an approach of half: without the first one the second can be seen."""
     arcs = ["C-9.5", "G2 X0 C-17.5 I-8. J0", "X-16. C-9.5 I0 J8.", "G1 C9.5", "G2 X0 C17.5 I8. J0", "X16. C9.5 I0 J-8."]

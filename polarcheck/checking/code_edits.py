@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from polarcheck.checking.engine import Engine
 from polarcheck.columns.contour.loop_edits import Edit
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Rows, side_by_side
@@ -140,6 +141,18 @@ def unskipped(trace: Trace, own: Rows) -> Iterator[list[CodeEdit]]:
             edit = Edit("code", 0, (), "", "a block before it is skipped", 0.0, how=how)
             sign = len(content) - len(content[1:].lstrip("0123456789"))
             yield [CodeEdit(row, edit, [(start, start + sign, "")])]
+
+
+def as_in_passes(engine: Engine, own: Rows) -> Iterator[list[CodeEdit]]:
+    """The block in which a path differs from another pass written as it stands there."""
+    run = engine.trace.run
+    for difference in engine.tables["pass_differences"].found.values():
+        row, other = difference.row, difference.other
+        if own[0] <= row <= own[-1] + 1 and difference.beside is None and is_plain(run, row) and is_plain(run, other):
+            start, end = content_of(run.text, int(run.block[row]))
+            content = run.text.source.excerpt(*content_of(run.text, int(run.block[other])))
+            replaced = (start, start, f"{content}\n") if difference.is_missing else (start, end, content)
+            yield [CodeEdit(row, Edit("other pass", 0, (), "", "", 0.0), [replaced])]
 
 
 def _at_head(trace: Trace, row: int, code: str) -> Replace:

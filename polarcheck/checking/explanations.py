@@ -15,7 +15,15 @@ from typing import NamedTuple
 import msgspec
 import numpy as np
 
-from polarcheck.checking.code_edits import CodeEdit, exchanged, missing_steps, ramp_edits, unneeded, unskipped
+from polarcheck.checking.code_edits import (
+    CodeEdit,
+    as_in_passes,
+    exchanged,
+    missing_steps,
+    ramp_edits,
+    unneeded,
+    unskipped,
+)
 from polarcheck.checking.edits import origins
 from polarcheck.checking.engine import Engine, with_following
 from polarcheck.checking.hidden_findings import MOST_ROWS, REPORTS, edited, is_told, with_hidden
@@ -123,7 +131,7 @@ def _explained(
     partly: list[Replace] = []
     whole: list[Replace] = []
     if symptoms:
-        search = _Search(engine, number)
+        search = _Search(engine, number, {finding.rule for finding in findings if is_told(finding)})
         try:
             for explanation in search.explanations(symptoms):
                 findings = _under(engine, findings, explanation)
@@ -150,9 +158,12 @@ def _lines(finding: Finding) -> set[int]:
 
 
 class _Search:
-    def __init__(self, engine: Engine, number: int) -> None:
+    def __init__(self, engine: Engine, number: int, told: set[str]) -> None:
         self.engine, self.trace, self.number = engine, engine.trace, number
-        self.rules = [rule for rule in engine.rules.values() if not rule.of_text and rule.over == "rows"]
+        rules = [rule for rule in engine.rules.values() if not rule.of_text and rule.over == "rows"]
+        # A rule that only notes is told more gravely where others follow from it.
+        graves = (SEVERITIES[rule.level(engine.severities)] >= WARNING or rule.name in told for rule in rules)
+        self.rules = [rule for rule, is_grave in zip(rules, graves, strict=True) if is_grave]
         self.rows_left = MOST_ROWS
         # What is explained is mended when the next path is tried, which may be compared with it.
         self.mended: list[Replace] = []
@@ -204,6 +215,8 @@ class _Search:
                 whole.append(found)
             elif found is not None and likely.is_clear:
                 (shows_more if found.left - self.symptoms else partly).append(found)
+        if not whole:
+            whole = self._by_codes(as_in_passes(self.engine, loop.row[1:]), own, others, _RULES_OF_CODE)
         rules = {rule for rule, line in self.symptoms if line in own}
         # A path that two numbers make regular has no code at the wrong place.
         is_of_two = sum(rule == REPORTS and line in own for rule, line in self.symptoms) > 1
@@ -333,7 +346,7 @@ class _Search:
         found: set[_Symptom] = set()
         for rule in self.rules:
             hits = engine.hits(rule)
-            if hits.mask.any() and SEVERITIES[rule.level(engine.severities)] >= WARNING:
+            if hits.mask.any():
                 severity = rule.severity if hits.severity is None else hits.severity
                 fires = hits.mask & (np.asarray(severity) >= WARNING)
                 found.update((rule.name, number) for number in set(line[fires].tolist()))
@@ -350,7 +363,9 @@ def _under(engine: Engine, findings: Sequence[Finding], explanation: _Explained)
     if not gone and not explanation.is_of_two:
         return list(findings)
     line = int(engine.trace.blocks.line[explanation.row])
-    there = [finding for finding in gone if finding.line == line and _may_lead(finding, explanation)]
+    # What compares two passes may be listed under what is found in one of them.
+    may_lead = [*gone, *(one for finding in gone for one in finding.follows if one.rule == _COMPARES)]
+    there = [finding for finding in may_lead if finding.line == line and _may_lead(engine, finding, explanation)]
     if not explanation.is_named and not there:
         return list(findings)
     there = [*(finding for finding in findings if _is_of_word(engine, finding, explanation)), *there]
@@ -361,7 +376,7 @@ def _under(engine: Engine, findings: Sequence[Finding], explanation: _Explained)
         for finding in gone
         if finding not in there[:1]
         for symptom in (msgspec.structs.replace(finding, follows=[]), *finding.follows)
-        if symptom.rule != REPORTS
+        if symptom.rule != REPORTS and symptom not in there[:1]
     ]
     return [*others, with_following(head, [*head.follows, *symptoms])]
 
@@ -377,8 +392,12 @@ def _is_of_word(engine: Engine, finding: Finding, explanation: _Explained) -> bo
     return finding.line == finding.end_line and finding.column <= column < finding.end_column
 
 
-def _may_lead(finding: Finding, explanation: _Explained) -> bool:
-    """A finding in the block of the edit may lead: a symptom, or one that names the words of the edit."""
+def _may_lead(engine: Engine, finding: Finding, explanation: _Explained) -> bool:
+    """A finding in the block of the edit may lead: a symptom, or one that names the words of the edit; no mere note."""
+    if explanation.likely.edit.kind == "other pass":
+        return finding.rule == _COMPARES
+    if SEVERITIES[engine.rules[finding.rule].level(engine.severities)] < WARNING:
+        return False
     needed = str(finding.values.get("word_needed", ""))
     names_none = not needed and finding.rule != REPORTS
     return names_none or _numbers(needed) == _numbers(explanation.likely.edit.text)
@@ -392,7 +411,8 @@ def _with_remedy(engine: Engine, finding: Finding, explanation: _Explained) -> F
     """The finding, which also says what the edit is."""
     edit = explanation.likely.edit
     stated = edit.how or edit.text
-    if finding.rule == REPORTS or not explanation.is_named or (stated and stated in finding.message):
+    is_said = finding.rule == REPORTS or edit.kind == "other pass" or (stated and stated in finding.message)
+    if is_said or not explanation.is_named:
         return finding
     message = f"{finding.message}; {_remedies(engine, explanation)} {explanation.likely.becomes}"
     return msgspec.structs.replace(finding, message=message)

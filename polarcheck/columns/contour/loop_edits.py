@@ -43,7 +43,7 @@ class Edit(NamedTuple):
     write the text. is_of_pen: no other design is likely to differ by the slip alone.
     """
 
-    kind: Literal["word", "missing", "letter", "exchanged", "arc", "sense", "twice", "order", "code"]
+    kind: Literal["word", "missing", "letter", "exchanged", "arc", "sense", "twice", "order", "code", "other pass"]
     corner: int
     words: tuple[int, ...]
     text: str

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     subject="",
     doubts=(("position", "section"), ("compensation", "section"), ("metal", "section")),
     follows={"section": ("compensation-without-contour", "polar-switched-in-offset-mode")},
+    is_symptom=True,
 )
 def cancel_without_start_up(misplaced_ramps: MisplacedRamps) -> Mask:
     """
