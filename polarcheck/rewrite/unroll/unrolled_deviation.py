@@ -11,55 +11,17 @@ from polarcheck.columns.path.moves import Moves
 from polarcheck.columns.path.tool_center import ToolCenter
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Floats, Mask, Rows, mask_at
-from polarcheck.foundation.states import MM_PER_INCH, FeedMode, Motion
+from polarcheck.foundation.states import FeedMode, Motion
 from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.straight_axes.spiral_pieces import along, distances
-from polarcheck.rewrite.compare.parts_compared import outside_compared
-from polarcheck.rewrite.compare.terms import EXACT, FEED_SHARE, Terms
+from polarcheck.rewrite.compare.terms import EXACT, FEED_SHARE
 from polarcheck.rewrite.unroll.axis_blocks import Steps, x_factor
 from polarcheck.rewrite.unroll.unrolled_feeds import method_of
-from polarcheck.rewrite.writing.order_refusals import changed_orders, refusal_of
+from polarcheck.rewrite.writing.order_refusals import changed_moves, changed_orders
 from polarcheck.rewrite.writing.original import Original
-from polarcheck.rewrite.writing.outcome import Figure, Refusal, refusal_at
+from polarcheck.rewrite.writing.outcome import Figure, Refusal
 from polarcheck.rewrite.writing.part_paths import path_on_part
 from polarcheck.rewrite.writing.rotary_feed import block_times
-
-
-def outside(old: Trace, new: Trace, rows: Mask) -> Iterator[Refusal]:
-    """What differs in blocks outside of sections, which are the same text in both."""
-    before, after = np.flatnonzero(old.mode.whole_section < 0), np.flatnonzero(rows)
-    if len(before) != len(after):
-        yield Refusal(0, "the result runs other blocks outside of the sections")
-        return
-    control = old.machine.control
-    terms = Terms(max(control.least_increment, control.least_increment_inch * MM_PER_INCH), has_other_moves=True)
-    section = np.searchsorted(old.mode.sections.enter, before)
-    for number in np.unique(section).tolist():
-        gap = section == number
-        result = outside_compared((old, new), ((), ()), (before[gap], after[gap]), terms)
-        if result.reason:
-            yield Refusal(0, f"not comparable: outside of sections: {result.reason}")
-        yield from map(refusal_of, result.differences)
-
-
-def depths(old: Trace, new: Trace, within: Mask) -> Iterator[Refusal]:
-    """Blocks with Z alone in the sections, in order."""
-    alone = mask_at(len(old), old.path.moves_z & (old.mode.section >= 0))
-    on_plane = old.path.travels
-    before = np.flatnonzero(alone & ~on_plane)
-    rotary = new.machine.polar.rotary_address
-    after = np.flatnonzero(within & new.path.moves_z & ~new.blocks.has("X", rotary))
-    if len(before) != len(after):
-        yield Refusal(0, f"the result has {len(after)} blocks with Z alone, not {len(before)}")
-        return
-    tolerance = old.lengths.least_step[before]
-    differs = ~(np.abs(old.path.z[before] - new.path.z[after]) <= tolerance)
-    differs |= old.axes.motion[before] != new.axes.motion[after]
-    feeds = old.feedrate.feed[before], new.feedrate.feed[after]
-    differs |= (old.axes.motion[before] != Motion.RAPID) & ~(np.abs(feeds[0] - feeds[1]) <= FEED_SHARE * feeds[0])
-    for index in np.flatnonzero(differs)[:1].tolist():
-        yield refusal_at(old, before[index], "Z or its F would differ")
-
 
 #: How many differences are listed.
 _LISTED = 10
@@ -99,7 +61,8 @@ def measured(
     if len(rows) != len(steps):
         return Measured([Refusal(0, f"the result has {len(rows)} blocks of X and C, not {len(steps)}")], [])
     paths = [path_on_part(program.tables, chord=np.inf) for program in (original, new)]
-    differences = [*outside(old, after, ~within), *depths(old, after, within)]
+    stays = (old.mode.whole_section < 0) | (old.path.moves_z & ~old.path.travels), ~mask_at(len(after), rows)
+    differences = [*changed_moves((old, after), (paths[0], paths[1]), stays)]
     differences += changed_orders(old, after, paths[0], paths[1], _AT_ORDERS)
     center: ToolCenter = original.tables["tool_center"]
     run = _Run(after, rows, method_of(old, feed))

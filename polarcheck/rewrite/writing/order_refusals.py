@@ -1,4 +1,4 @@
-"""What differs between the orders of a program and of the one that is written anew, as reasons not to write it."""
+"""What differs between the orders and kept moves of a program and of the one written anew: reasons not to write it."""
 
 from __future__ import annotations
 
@@ -8,13 +8,15 @@ from collections.abc import Collection, Iterator, Sequence
 import numpy as np
 
 from polarcheck.columns.trace import Trace
+from polarcheck.foundation.arrays import Mask
 from polarcheck.rewrite.compare.compared_sections import FedPath
 from polarcheck.rewrite.compare.comparison_report import Difference, SectionPair
+from polarcheck.rewrite.compare.differences import feed_differs
 from polarcheck.rewrite.compare.order_differences import order_differences
 from polarcheck.rewrite.compare.order_meanings import meaning_steps, names_speeds, speed_steps
 from polarcheck.rewrite.compare.orders import Step, steps
-from polarcheck.rewrite.compare.terms import DWELL, EXACT, SPEED
-from polarcheck.rewrite.writing.outcome import Refusal
+from polarcheck.rewrite.compare.terms import ANGLE, DWELL, EXACT, FEED_SHARE, SPEED
+from polarcheck.rewrite.writing.outcome import Refusal, refusal_at
 
 #: Words of M, S and T in a text.
 _COMMANDS = re.compile(r"\b[MST]\d")
@@ -48,6 +50,26 @@ def changed_orders(old: Trace, new: Trace, old_path: FedPath, new_path: FedPath,
     for difference in order_differences(before, after, EXACT, moved):
         if difference.old_line is not None or _COMMANDS.search(difference.text):
             yield refusal_of(difference)
+
+
+def changed_moves(
+    traces: tuple[Trace, Trace], paths: tuple[FedPath, FedPath], stays: tuple[Mask, Mask]
+) -> Iterator[Refusal]:
+    """
+    Yield the first move that a rewriter leaves as it is and that would lead elsewhere, or run at another F.
+
+    paths: on the part, a piece for each move. stays: a boolean per row of either program: its move is compared.
+    """
+    old, new = (path[mask[path.row]] for path, mask in zip(paths, stays, strict=True))
+    if len(old) != len(new):
+        yield Refusal(0, f"the result has {len(new)} moves outside of rewritten paths, not {len(old)}")
+        return
+    moves, steps_of = np.arange(len(old)), traces[0].lengths.least_step[old.row]
+    apart = np.maximum(np.abs(old.end - new.end), np.abs(old.z_end - new.z_end))
+    differs = ~(apart <= steps_of + np.abs(old.end) * np.radians(ANGLE))
+    differs |= traces[0].axes.motion[old.row] != traces[1].axes.motion[new.row]
+    differs |= feed_differs(old, moves, new, moves, FEED_SHARE)
+    yield from (refusal_at(traces[0], row, "X, Z, C or F would differ") for row in old.row[differs][:1].tolist())
 
 
 def changed_meanings(
