@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from polarcheck.columns.path.lengths import RADIUS_FACTOR
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Mask, Rows
 from polarcheck.foundation.states import Motion
@@ -64,9 +63,3 @@ def _jump_targets(trace: Trace) -> Mask:
         return trace.blocks.nowhere
     n_words = (run.words.address == ord("N")) & np.isin(run.words.value, list(numbers))
     return trace.blocks.with_words(n_words)
-
-
-def x_factor(trace: Trace, row: int) -> float:
-    """Radius per X word outside of the mode."""
-    factor = float(trace.lengths.x_factor[row])
-    return factor if factor > 0 else RADIUS_FACTOR[trace.machine.control.x]

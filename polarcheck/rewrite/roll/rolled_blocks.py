@@ -12,7 +12,7 @@ from polarcheck.foundation.arrays import stretch
 from polarcheck.foundation.states import FEED_MODES, MM_PER_INCH, STATES, FeedMode, Motion
 from polarcheck.program.machines.code_tables import code_set
 from polarcheck.rewrite.roll.entries import Entry
-from polarcheck.rewrite.roll.following import Following, x_factor
+from polarcheck.rewrite.roll.following import Following
 from polarcheck.rewrite.roll.rollable import Stretch
 from polarcheck.rewrite.roll.rolled_elements import Element
 from polarcheck.rewrite.roll.ways import AxisMoves
@@ -42,7 +42,7 @@ def restored(trace: Trace, following: Following, last: int, pen: Pen, *, is_line
     if takes_motion or not writes_x:
         words.append(pen.numbers.code("G1"))
     if not writes_x:
-        count = pen.numbers.increments(float(trace.path.x[last]) / x_factor(trace, last))
+        count = pen.numbers.increments(float(trace.path.x[last] / trace.lengths.x_factor[last]))
         words.append(pen.numbers.word("X", count))
     is_time = mode == FeedMode.INVERSE_TIME
     if following.takes_over(last, following.at_feed, following.feed) or (is_time and not writes_x):
@@ -194,7 +194,7 @@ class Writer:
 
     @property
     def _is_radius(self) -> bool:
-        return x_factor(self.trace, self.each.first) == 1
+        return bool(self.trace.lengths.x_factor[self.each.first] == 1)
 
     def _makes_of_x(self, block: NewBlock) -> bool | None:
         """True where a block makes X a radius, False for a diameter, None where it does neither."""

@@ -68,10 +68,10 @@ def feeds_of(moves: AxisMoves, elements: list[Element], machine: Machine, unit: 
     plane = np.array([element.kind != Motion.NONE for element in elements], bool)
     weight = np.array([length[element.first : element.until].sum() for element in elements])
     both = on_plane & free if (on_plane & free).any() else on_plane
-    overall = _median(speed[both], length[both])
+    overall = _quantile(speed[both], length[both])
     intended = np.where(plane, _grouped(speeds, weight, plane & even, overall), speeds)
     written = [nice(feed, unit) if on else feed for feed, on in zip(intended.tolist(), plane.tolist(), strict=True)]
-    low, high = _ends(speed[on_plane], length[on_plane])
+    low, high = (_quantile(speed[on_plane], length[on_plane], share) for share in (0.05, 0.95))
     lengths_by_feed: dict[float, float] = {}
     for feed, long, on in zip(written, weight.tolist(), plane.tolist(), strict=True):
         if on:
@@ -115,7 +115,7 @@ def _element_speeds(speed: Floats, length: Floats, free: Mask, elements: list[El
         moves = slice(element.first, element.until)
         values, weights = speed[moves][free[moves]], length[moves][free[moves]]
         if len(values):
-            speeds[index] = _median(values, weights)
+            speeds[index] = _quantile(values, weights)
             differs = np.abs(values / speeds[index] - 1) > _EVEN
             even[index] = weights[differs].sum() <= _UNEVEN_WAY * weights.sum()
     return speeds, even
@@ -129,25 +129,16 @@ def _grouped(speeds: Floats, weight: Floats, even: Mask, overall: float) -> Floa
     for _ in range(_MOST):
         alike = remaining & (np.abs(speeds / center - 1) <= _SAME)
         if alike.any():
-            result[alike] = _median(speeds[alike], weight[alike])
+            result[alike] = _quantile(speeds[alike], weight[alike])
             remaining &= ~alike
         if not remaining.any():
             break
-        center = _median(speeds[remaining], weight[remaining])
+        center = _quantile(speeds[remaining], weight[remaining])
     return result
 
 
-def _median(values: Floats, weights: Floats) -> float:
-    """The weighted median."""
+def _quantile(values: Floats, weights: Floats, share: float = 0.5) -> float:
+    """The value below which this share of the weight lies: the weighted median."""
     order = np.argsort(values)
     total = np.cumsum(weights[order])
-    return float(values[order][np.searchsorted(total, total[-1] / 2)])
-
-
-def _ends(values: Floats, weights: Floats) -> tuple[float, float]:
-    """The values below which, and above which, a twentieth of the weight lies."""
-    order = np.argsort(values)
-    total = np.cumsum(weights[order])
-    indices = np.searchsorted(total, [0.05 * total[-1], 0.95 * total[-1]])
-    low, high = values[order][np.minimum(indices, len(values) - 1)].tolist()
-    return low, high
+    return float(values[order][min(int(np.searchsorted(total, share * total[-1])), len(values) - 1)])

@@ -10,7 +10,7 @@ import numpy as np
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.states import Motion
 from polarcheck.rewrite.roll.entries import entry_of
-from polarcheck.rewrite.roll.following import Following, x_factor
+from polarcheck.rewrite.roll.following import Following
 from polarcheck.rewrite.roll.rollable import LEAST, Stretch, stretches
 from polarcheck.rewrite.roll.rolled_blocks import Writer
 from polarcheck.rewrite.roll.rolled_deviation import Measured, Section, measured_of
@@ -22,6 +22,7 @@ from polarcheck.rewrite.writing.new_blocks import edit_behind, edits_of, with_ed
 from polarcheck.rewrite.writing.original import Original
 from polarcheck.rewrite.writing.outcome import Figure, Outcome, Refusal, RefusedError, refused_at
 from polarcheck.rewrite.writing.reading_back import ReadBack, read_back_on_part
+from polarcheck.rewrite.writing.rotary_feed import notes_on_feed
 from polarcheck.rewrite.writing.style import Style
 from polarcheck.rewrite.writing.style_of import style_of
 from polarcheck.rules.editing import in_place_of
@@ -122,7 +123,11 @@ def _section(
         text = f"a tolerance of {tolerance:g} mm is too little: rounding alone takes {reserve:.4f} mm"
         raise RefusedError([Refusal(candidate.line, text)])
     widest = float(np.abs(moves.radius).max(initial=0.0))
-    noise = np.hypot(step * x_factor(trace, candidate.first), widest * np.radians(machine.control.least_increment)) / 2
+    x_step, c_step = (
+        step * trace.lengths.x_factor[candidate.first],
+        widest * np.radians(machine.control.least_increment),
+    )
+    noise = np.hypot(x_step, c_step) / 2
     fit = fit_of(moves, tolerance, reserve, 1.5 * float(noise))
     unit = float(trace.lengths.feed_scale[candidate.first])
     _require_off_center(original, moves, fit, step)
@@ -202,11 +207,7 @@ def _notes(original: Original, sections: Sequence[Section], rule: str, options: 
         notes.append(f"{where}: {len(section.way)} blocks become {curves} with {_feeds(section)}")
         notes += [f"{where}: {text}" for text in _on_feed(section)]
         notes += [f"{where}: {text}" for text in _on_entry(trace, section)]
-    rules = trace.machine.feed.with_rotary
-    if rule and rule not in rules:
-        notes.append(f"F is {rule} as --feed says; the profile of {trace.machine.title} does not say so")
-    elif rule and "feed.with_rotary" in original.settings.doubtful:
-        notes.append(f"that F is {rule} on {trace.machine.title} is in doubt: compare the times, or give --feed")
+    notes += notes_on_feed(original.settings, rule, rule, "compare the times, or give --feed") if rule else []
     notes.append("the path is that of the tool center: `polarcheck compensate` gives it G41 or G42")
     return notes
 

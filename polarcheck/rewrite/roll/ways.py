@@ -14,7 +14,7 @@ from polarcheck.geometry.plane import quiet
 from polarcheck.geometry.tolerances import ZERO
 from polarcheck.rewrite.roll.rollable import Stretch
 from polarcheck.rewrite.writing.outcome import Refusal, RefusedError
-from polarcheck.rewrite.writing.rotary_feed import INVERSE_TIME, block_times
+from polarcheck.rewrite.writing.rotary_feed import INVERSE_TIME, block_times, feed_not_known, per_minute
 
 #: A turn of C on the spot within this of half turns counts as half turns [rad].
 _HALF_TURN = 1e-4
@@ -59,15 +59,13 @@ def per_minute_rule(trace: Trace, stretches: list[Stretch], feed: str) -> str:
     mode = trace.feedrate.modal_feed_mode[moving]
     if not (mode == FeedMode.PER_MINUTE).any():
         return ""
-    rules = [rule for rule in trace.machine.feed.with_rotary if rule != INVERSE_TIME]
     line = int(trace.blocks.line_in_file[moving[np.argmax(mode == FeedMode.PER_MINUTE)]])
     if feed == INVERSE_TIME:
         code = trace.machine.codes("feed_inverse_time")[0]
         raise RefusedError([Refusal(line, f"F is per minute here, and not inverse time: no {code} is in force")])
-    if not feed and not rules:
-        why = f"what F per minute is where X and C move together is not known of {trace.machine.title}"
-        raise RefusedError([Refusal(line, f"{why}: feed.with_rotary of a machine file says it, or --feed for once")])
-    return feed or rules[0]
+    if not feed and not per_minute(trace.machine):
+        raise feed_not_known(trace.machine, "what F per minute is where X and C move together", line)
+    return feed or per_minute(trace.machine)[0]
 
 
 def axis_moves(trace: Trace, candidate: Stretch, rule: str) -> AxisMoves:

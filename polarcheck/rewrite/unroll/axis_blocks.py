@@ -5,6 +5,7 @@ from __future__ import annotations
 import msgspec
 import numpy as np
 
+from polarcheck.columns.filling import fill_down
 from polarcheck.columns.path.lengths import RADIUS_FACTOR
 from polarcheck.columns.path.moves import Moves, z_along
 from polarcheck.columns.trace import Trace
@@ -121,11 +122,9 @@ class Steps(Table, frozen=True):
 
 def x_factor(trace: Trace) -> Floats:
     """Radius per written X in each row as it would be outside of the mode."""
-    outside = np.where(trace.mode.section < 0, trace.lengths.x_factor, np.nan)
-    for enter, last in zip(trace.mode.sections.enter.tolist(), trace.mode.sections.last.tolist(), strict=True):
-        before = outside[enter - 1] if enter and not trace.blocks.starts[enter] else np.nan
-        outside[enter : last + 1] = RADIUS_FACTOR[trace.machine.control.x] if np.isnan(before) else before
-    return outside
+    outside, at_start = trace.mode.section < 0, RADIUS_FACTOR[trace.machine.control.x]
+    factor = np.where(outside, trace.lengths.x_factor, at_start)
+    return fill_down(factor, outside | trace.blocks.starts, at_start)
 
 
 def steps_of(trace: Trace, moves: Moves, chord_error: float) -> Steps:

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from polarcheck.columns.filling import before, happened
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Floats, Mask, cached_property, stretch
 from polarcheck.foundation.states import FEED_MODES, Distance, FeedMode, Motion, Units
@@ -64,10 +65,8 @@ class Writer:
     @cached_property
     def says_feed_mode(self) -> Mask:
         """Whether a code above a row, in the same program, says what F is."""
-        trace, rows = self.trace, np.arange(len(self.trace))
-        last = np.maximum.accumulate(np.where(trace.modal.sets("feed_mode"), rows, -1))
-        first = np.maximum.accumulate(np.where(trace.blocks.starts, rows, 0))
-        return np.append(-1, last[:-1]) >= first
+        starts = self.trace.blocks.starts
+        return before(happened(self.trace.modal.sets("feed_mode"), starts), starts, False)
 
     def _written_out(self, rows: Sequence[int], section: Stretch) -> list[tuple[int, list[NewBlock] | None]]:
         """The rows of a section that does not run from top to bottom; comments stand where they run first."""

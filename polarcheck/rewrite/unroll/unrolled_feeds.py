@@ -7,12 +7,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Floats, Mask, Rows
-from polarcheck.foundation.states import FeedMode
+from polarcheck.foundation.arrays import Floats, Rows
 from polarcheck.program.machines.feed_keys import WITH_ROTARY
 from polarcheck.rewrite.unroll.axis_blocks import Steps, x_factor
-from polarcheck.rewrite.writing.outcome import Refusal, RefusedError, refusal_at
-from polarcheck.rewrite.writing.rotary_feed import block_feeds
+from polarcheck.rewrite.writing.outcome import Refusal, refusal_at
+from polarcheck.rewrite.writing.rotary_feed import block_feeds, feed_not_known, per_minute
 
 #: Values of --feed: the meanings of F; and stepwise, per minute as on the machine, with one F for several blocks.
 FEEDS = (*WITH_ROTARY, "stepwise")
@@ -33,23 +32,16 @@ def chosen(trace: Trace, feed: str) -> str:
     Raises RefusedError if it is not known.
     """
     of_machine: Sequence[str] = trace.machine.feed.with_rotary
-    per_minute = [name for name in of_machine if name != "inverse-time"]
-    if feed == "stepwise" and not per_minute:
-        why = "how X and C share F per minute is not known"
-    elif not feed and not of_machine:
-        why = "what F is where X and C move together is not known"
-    else:
-        return feed or of_machine[0]
-    raise RefusedError(
-        [Refusal(0, f"{why} of {trace.machine.title}: feed.with_rotary of a machine file says it, or --feed for once")]
-    )
+    if feed == "stepwise" and not per_minute(trace.machine):
+        raise feed_not_known(trace.machine, "how X and C share F per minute")
+    if not feed and not of_machine:
+        raise feed_not_known(trace.machine, "what F is where X and C move together")
+    return feed or of_machine[0]
 
 
 def method_of(trace: Trace, feed: str) -> str:
     """Return the meaning of F, one of WITH_ROTARY."""
-    if feed != "stepwise":
-        return feed
-    return next(name for name in trace.machine.feed.with_rotary if name != "inverse-time")
+    return per_minute(trace.machine)[0] if feed == "stepwise" else feed
 
 
 def times(trace: Trace, steps: Steps) -> Floats:
@@ -73,10 +65,6 @@ def feeds(trace: Trace, steps: Steps, time: Floats, feed: str) -> Floats:
     if feed == "stepwise":
         exact = _stepwise(exact, steps)
     return _rounded(exact)
-
-
-def mode_of(feed: str) -> FeedMode:
-    return FeedMode.INVERSE_TIME if feed == "inverse-time" else FeedMode.PER_MINUTE
 
 
 def _rounded(feed: Floats) -> Floats:
@@ -105,11 +93,9 @@ def _stepwise(feed: Floats, steps: Steps) -> Floats:
     return np.array(values, np.float64)
 
 
-def slowed(steps: Steps, time: Floats) -> tuple[Mask, Rows]:
-    """Blocks that take longer than the F of the section says, and their rows in the trace."""
-    slow = time > steps.time * (1 + 1e-9)
-    slow &= steps.move >= 0
-    return slow, steps.row[slow]
+def slowed(steps: Steps, time: Floats) -> Rows:
+    """The rows in the trace of blocks that take longer than the F of the section says."""
+    return steps.row[(time > steps.time * (1 + 1e-9)) & (steps.move >= 0)]
 
 
 def beyond_travel(trace: Trace, steps: Steps) -> list[Refusal]:
@@ -117,15 +103,11 @@ def beyond_travel(trace: Trace, steps: Steps) -> list[Refusal]:
     limits = trace.machine.limits
     scale = (x_factor(trace) * trace.lengths.least_step)[steps.row]
     radius = steps.x * scale
-    reasons = []
-    for hits, name, limit in (
-        (radius < limits.x_minimum - _ROUNDING, "below", limits.x_minimum),
-        (radius > limits.x_maximum + _ROUNDING, "above", limits.x_maximum),
-    ):
-        if hits.any():
-            reasons.append(
-                refusal_at(
-                    trace, steps.row[np.argmax(hits)], f"X would go {name} its travel limit of {limit:g} mm as a radius"
-                )
-            )
-    return reasons
+    return [
+        refusal_at(trace, row, f"X would go {name} its travel limit of {limit:g} mm as a radius")
+        for hits, name, limit in (
+            (radius < limits.x_minimum - _ROUNDING, "below", limits.x_minimum),
+            (radius > limits.x_maximum + _ROUNDING, "above", limits.x_maximum),
+        )
+        for row in steps.row[hits][:1].tolist()
+    ]

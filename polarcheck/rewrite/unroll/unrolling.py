@@ -13,6 +13,7 @@ from polarcheck.columns.path.tool_center import ToolCenter
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Floats
 from polarcheck.foundation.finding import SEVERITIES, Severity
+from polarcheck.foundation.states import FeedMode
 from polarcheck.rewrite.unroll import unrolled_deviation, unrolled_feeds
 from polarcheck.rewrite.unroll.axis_blocks import Steps, steps_of
 from polarcheck.rewrite.unroll.texts import NewText, new_text
@@ -22,6 +23,7 @@ from polarcheck.rewrite.unroll.unrolled_feeds import FEEDS as FEEDS
 from polarcheck.rewrite.writing.new_blocks import with_edits
 from polarcheck.rewrite.writing.original import Original, read
 from polarcheck.rewrite.writing.outcome import Figure, Outcome, Refusal, RefusedError
+from polarcheck.rewrite.writing.rotary_feed import INVERSE_TIME, notes_on_feed
 from polarcheck.rewrite.writing.style_of import style_of
 from polarcheck.rules.rule import load_all
 
@@ -82,7 +84,8 @@ def unrolled(original: Original, options: Unrolling) -> Outcome:
         raise RefusedError(reasons)
     time = unrolled_feeds.times(trace, steps)
     style = style_of(trace)
-    writer = Writer(trace, steps, unrolled_feeds.feeds(trace, steps, time, feed), unrolled_feeds.mode_of(feed), style)
+    mode = FeedMode.INVERSE_TIME if feed == INVERSE_TIME else FeedMode.PER_MINUTE
+    writer = Writer(trace, steps, unrolled_feeds.feeds(trace, steps, time, feed), mode, style)
     text = new_text(original, sections, writer, style)
     data, origin = with_edits(original, text.edits)
     new = read(original.path, data, original.settings)
@@ -106,8 +109,8 @@ def _notes(original: Original, steps: Steps, time: Floats, feed: str) -> list[st
         notes.append(f"through the center of C, where C turns on the spot: line {where}")
     spots = steps.row[(steps.move < 0) & (steps.x != 0)]
     notes += [f"line {line}: C is turned to where the section begins" for line in dict.fromkeys(lines[spots].tolist())]
-    slow, rows = unrolled_feeds.slowed(steps, time)
-    if slow.any():
+    rows = unrolled_feeds.slowed(steps, time)
+    if len(rows):
         where = ", ".join(str(line) for line in list(dict.fromkeys(lines[rows].tolist()))[:10])
         notes.append(f"slower than its F in {len(rows)} blocks, since C or X would pass its limit: line {where}")
     control = trace.machine.control
@@ -115,12 +118,9 @@ def _notes(original: Original, steps: Steps, time: Floats, feed: str) -> list[st
     is_beyond = bool(np.any((turns < 0) | (turns > 360)))
     if is_beyond and not control.rotary_rolls_over and "control.rotary_rolls_over" in original.settings.doubtful:
         notes.append("C is written below 0 or above 360 deg: that it does not roll over there is in doubt")
-    method = unrolled_feeds.method_of(trace, feed)
-    if "feed.with_rotary" in original.settings.doubtful and method in trace.machine.feed.with_rotary:
-        notes.append(f"that F is {method} on {trace.machine.title} is in doubt: try it above the part")
-    elif method not in trace.machine.feed.with_rotary:
-        notes.append(f"F is {feed} as --feed says; the profile of {trace.machine.title} does not say so")
-    return notes
+    return notes + notes_on_feed(
+        original.settings, unrolled_feeds.method_of(trace, feed), feed, "try it above the part"
+    )
 
 
 def _notes_of_text(trace: Trace, sections: Sequence[Stretch], writer: Writer, text: NewText) -> Iterator[str]:

@@ -4,12 +4,38 @@ from __future__ import annotations
 
 import numpy as np
 
+from polarcheck.checking.settings import Settings
 from polarcheck.foundation.arrays import Floats
 from polarcheck.geometry.plane import quiet
+from polarcheck.program.machines.machine import Machine
+from polarcheck.rewrite.writing.outcome import Refusal, RefusedError
 
 INVERSE_TIME, OF_C, OF_DIAMETER = "inverse-time", "per-minute-c", "per-minute-diameter"
 #: A turn of C of less is none [deg].
 _NO_TURN = 1e-9
+
+
+def per_minute(machine: Machine) -> list[str]:
+    """Return the meanings of F per minute on a machine, the usual one first; empty where none is known."""
+    return [rule for rule in machine.feed.with_rotary if rule != INVERSE_TIME]
+
+
+def feed_not_known(machine: Machine, what: str, line: int = 0) -> RefusedError:
+    """Return the error to raise where a profile does not say what F is. line: that needs it, 0 for all."""
+    how = "feed.with_rotary of a machine file says it, or --feed for once"
+    return RefusedError([Refusal(line, f"{what} is not known of {machine.title}: {how}")])
+
+
+def notes_on_feed(settings: Settings, rule: str, feed: str, how: str) -> list[str]:
+    """
+    Return a note where the meaning of F that was taken does not come from the profile, or is in doubt there.
+
+    rule: one of feed_keys.WITH_ROTARY. feed: as --feed has it. how: what helps against the doubt.
+    """
+    title = settings.machine.title
+    if rule not in settings.machine.feed.with_rotary:
+        return [f"F is {feed} as --feed says; the profile of {title} does not say so"]
+    return [f"that F is {rule} on {title} is in doubt: {how}"] * ("feed.with_rotary" in settings.doubtful)
 
 
 @quiet

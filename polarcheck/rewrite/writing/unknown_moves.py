@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from polarcheck.columns.filling import happened
+from polarcheck.columns.filling import before, happened
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Mask, Rows, mask_at
 from polarcheck.foundation.states import MOVES, Distance
@@ -69,8 +69,7 @@ class UnknownMoves:
         distance = trace.blocks.distance(axis)
         is_step = trace.modal.incremental if distance is None else distance == Distance.INCREMENTAL
         finds = trace.blocks.has(axis) & ~is_step & trace.modal.uses_axes & ~loses
-        behind = happened(loses, finds | trace.blocks.starts)
-        return np.append(False, behind[:-1])[: len(trace)] & ~trace.blocks.starts
+        return before(happened(loses, finds | trace.blocks.starts), trace.blocks.starts, False)
 
 
 def listed_codes(machine: Machine) -> list[str]:
