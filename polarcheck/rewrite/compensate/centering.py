@@ -51,7 +51,7 @@ def centered(original: Original) -> Outcome:
     data, origin = with_edits(original, sorted(edits))
     step = float(np.max(trace.lengths.least_step))
     tolerance = _INCREMENTS * step + 1e-3
-    result = read_back_on_part(original, data, original.settings, origin, tolerance, keeps_sections=True)
+    result = read_back_on_part(original, data, origin, tolerance, keeps_sections=True)
     require_equal(result)
     figures = [
         Figure("sections written as the path of the tool center", len(sections)),

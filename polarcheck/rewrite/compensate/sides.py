@@ -107,12 +107,12 @@ class Swept:
         return Curves(*moves.shape, np.zeros(len(chosen), int), chosen)
 
 
-def points_along(contour: Sequence[Piece], count: int = _POINTS) -> Points:
-    """Return about `count` points along a contour, at least two inside each piece, none at a corner."""
+def points_along(contour: Sequence[Piece]) -> Points:
+    """Return some 400 points along a contour, at least two inside each piece, none at a corner."""
     whole = sum(piece.length for piece in contour) or 1.0
     result: list[complex] = []
     for piece in contour:
-        points_of_piece = max(2, math.ceil(count * piece.length / whole))
+        points_of_piece = max(2, math.ceil(_POINTS * piece.length / whole))
         result += [piece.at((number + 0.5) / points_of_piece) for number in range(points_of_piece)]
     return np.array(result)
 

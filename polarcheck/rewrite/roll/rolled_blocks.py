@@ -17,7 +17,6 @@ from polarcheck.rewrite.roll.rollable import Stretch
 from polarcheck.rewrite.roll.rolled_elements import Element
 from polarcheck.rewrite.roll.ways import AxisMoves
 from polarcheck.rewrite.writing.new_blocks import NewBlock
-from polarcheck.rewrite.writing.outcome import Refusal, RefusedError
 from polarcheck.rewrite.writing.pen import Pen, pen_at
 from polarcheck.rewrite.writing.style import Style
 from polarcheck.rules.editing import is_plain
@@ -38,7 +37,7 @@ def restored(trace: Trace, following: Following, last: int, pen: Pen, *, is_line
     writes_x = on_plane == len(trace) or (trace.blocks.has("X")[on_plane] and not trace.modal.is_step("X")[on_plane])
     words = _plane(trace, following, last, pen)
     if mode != FeedMode.PER_MINUTE and following.takes_over(last, following.at_feed, following.feed_mode):
-        words.append(feed_code(pen, mode))
+        words.append(pen.numbers.code_for(FEED_MODES[mode]))
     if takes_motion or not writes_x:
         words.append(pen.numbers.code("G1"))
     if not writes_x:
@@ -53,14 +52,6 @@ def restored(trace: Trace, following: Following, last: int, pen: Pen, *, is_line
     return [NewBlock(tuple(words))] if words else []
 
 
-def feed_code(pen: Pen, mode: FeedMode) -> str:
-    """The code of what F is. Raises RefusedError where the machine has none."""
-    codes = pen.machine.codes(FEED_MODES[mode])
-    if not codes:
-        raise RefusedError([Refusal(pen.numbers.line, f"no code for that F is known: {pen.machine.title}")])
-    return pen.numbers.code(codes[0])
-
-
 def _plane(trace: Trace, following: Following, last: int, pen: Pen) -> list[str]:
     """The code of the plane that was in force, where the section leaves another one and arcs follow."""
     machine, writing = trace.machine, trace.machine.writing
@@ -72,7 +63,7 @@ def _plane(trace: Trace, following: Following, last: int, pen: Pen) -> list[str]
     before = planes.get(f"G{state}", "plane_zx")
     if not after or after[-1] == before or not following.takes_over(last, following.arcs, following.plane):
         return []
-    return [pen.numbers.code(machine.codes(before)[0])]
+    return [pen.numbers.code_for(before)]
 
 
 #: F of the turn back is so much of what C allows.
@@ -185,7 +176,7 @@ class Writer:
         before = row if self.trace.blocks.starts[row] else row - 1
         if self.trace.feedrate.modal_feed_mode[before] == FeedMode.PER_MINUTE:
             return []
-        return [NewBlock((feed_code(self.pen, FeedMode.PER_MINUTE),))]
+        return [NewBlock((self.pen.numbers.code_for(FEED_MODES[FeedMode.PER_MINUTE]),))]
 
     def _switched_on(self, point: complex, z: float, direction: float = 0.0) -> list[NewBlock]:
         """The blocks that switch the mode on, without one that makes of X what it is already."""

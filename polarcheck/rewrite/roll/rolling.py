@@ -181,7 +181,7 @@ def _written(
     return (
         data,
         origin,
-        read_back_on_part(original, data, original.settings, origin, allowed, chord, left_out, noted=("setup",)),
+        read_back_on_part(original, data, origin, allowed, chord, left_out, noted=("setup",)),
     )
 
 

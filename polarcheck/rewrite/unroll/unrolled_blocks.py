@@ -161,19 +161,12 @@ class Writer:
     def _state(self, row: int, mode: FeedMode | None, distance: int = Distance.ABSOLUTE) -> list[str]:
         words = []
         if distance != self._distance:
-            words.append(self._first_code(row, "absolute" if distance == Distance.ABSOLUTE else "incremental"))
+            words.append(self._numbers(row).code_for("absolute" if distance == Distance.ABSOLUTE else "incremental"))
             self._distance = distance
         if mode is not None and mode != self._mode:
-            words.append(self._first_code(row, FEED_MODES[mode]))
+            words.append(self._numbers(row).code_for(FEED_MODES[mode]))
             self._mode, self._feed = int(mode), ""
         return words
-
-    def _first_code(self, row: int, key: str) -> str:
-        codes = self.trace.machine.codes(key)
-        if not codes:
-            title = self.trace.machine.title
-            raise refused_at(self.trace, row, f"no code of {title} is known for that: {key.replace('_', ' ')}")
-        return self._numbers(row).code(codes[0])
 
     def _motion_word(self, row: int, code: str) -> str:
         # Not by control.motion_codes: G101 of Okuma is a straight line on the plane, also without the mode.

@@ -25,28 +25,23 @@ from polarcheck.rules.tables import Tables
 CHORD = 1e-4
 
 
-def path_on_part(tables: Tables, first: int = 0, until: int | None = None, chord: float = CHORD) -> FedPath:
+def path_on_part(tables: Tables, chord: float = CHORD) -> FedPath:
     """
-    Return the path of the tool on the part, whose x axis points to C0, in the rows from `first` up to `until`, not
-    included.
+    Return the path of the tool on the part, whose x axis points to C0.
 
     chord: the largest distance of chords from the true path of a move of X and C [mm].
 
     Raises RefusedError with the line where R or a position is not known; TooHardError for too many chords.
     """
     trace: Trace = tables["trace"]
-    until = len(trace) if until is None else until
     # With ANGLE as its tolerance C stays in degrees.
     terms = Terms(ANGLE)
     sections = of_sections(trace, tables["tool_center"], (), terms)
-    parts = [section.path for section in sections if section.rows[0] < until and section.rows[-1] >= first]
-    parts.append(_without_mode(outside(trace, (), np.arange(first, until), terms), chord))
-    moves = FedPath.concatenated(parts)
-    moves = moves[(moves.row >= first) & (moves.row < until)]
+    around = _without_mode(outside(trace, (), np.arange(len(trace)), terms), chord)
+    moves = FedPath.concatenated([*(section.path for section in sections), around])
     moves = moves[np.argsort(moves.row, kind="stable")]
     programmed = [section for section in sections if section.as_programmed]
     missing = np.append(moves.row[~moves.is_known], [section.path.row[0] for section in programmed])
-    missing = missing[(missing >= first) & (missing < until)]
     if len(missing):
         reason = programmed[0].as_programmed if programmed else "where the tool is there is not known"
         raise refused_at(trace, int(missing.min()), reason)

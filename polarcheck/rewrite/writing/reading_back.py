@@ -113,7 +113,6 @@ def read_back(
 def read_back_on_part(
     original: Original,
     data: bytes,
-    settings: Settings,
     origin: Sequence[int],
     tolerance: float,
     chord: float = CHORD,
@@ -131,8 +130,7 @@ def read_back_on_part(
     codes, and the findings of a check. The caller compares F, unless sections are kept. The deviation includes that of
     chords from the true path of X and C.
 
-    settings: of the new program.
-    origin: for each of its lines the line in the original, from 1.
+    origin: for each line of the new program, which is for the same machine, the line in the original, from 1.
     tolerance: the largest distance of the paths [mm].
     chord: the largest distance of chords from the true path [mm].
     left_out: lines of the original that position the tool differently in the new program; the moves after them are
@@ -145,7 +143,7 @@ def read_back_on_part(
 
     Raises RefusedError where a position of the original is not known, or the new program cannot be run once.
     """
-    new = read(original.path, data, settings)
+    new = read(original.path, data, original.settings)
     old_path, new_path = (path_on_part(program.tables, chord=chord) for program in (original, new))
     if left_out:
         stands_for = lines_before(new.trace, origin)

@@ -87,6 +87,14 @@ class Numbers:
         letter, number, rest = match.groups("")
         return letter + number.zfill(self.style.code_digits) + rest
 
+    def code_for(self, key: str) -> str:
+        """The first code of a list of the machine as it is written. Raises RefusedError where it has none."""
+        codes = self.machine.codes(key)
+        if not codes:
+            text = f"no code of {self.machine.title} is known for that: {key.replace('_', ' ')}"
+            raise RefusedError([Refusal(self.line, text)])
+        return self.code(codes[0])
+
     def _checked(self, fixed: str, decimals: int | None, point: bool, counts: bool = True) -> str:
         """A number in the style of the program. counts: without a point the control may count it in increments."""
         whole, _, rest = fixed.lstrip("-").partition(".")
