@@ -18,6 +18,7 @@ from polarcheck.geometry import polar
 from polarcheck.geometry.plane_path import SpacePath
 from polarcheck.rewrite.compare.orders import Step, feed_step, special_rows
 from polarcheck.rewrite.compare.terms import Terms
+from polarcheck.rules.quantity import Quantity, in_row
 from polarcheck.rules.repair import FEED, WAY, Z
 from polarcheck.rules.wording.offsets import called_tool, to_give
 
@@ -51,7 +52,7 @@ class Stretch(msgspec.Struct, frozen=True):
     """
     A polar section, or the blocks between two sections.
 
-    section: number of the section, -1 outside.
+    trace: of its program. section: number of the section, -1 outside.
     rows: rows of the trace.
     path: inside a section plane points on the part, with Z; outside Z + 1j*X, with C in the place of Z.
     steps: the orders beside the moves.
@@ -62,6 +63,7 @@ class Stretch(msgspec.Struct, frozen=True):
     as_programmed: why the path is the programmed one, as R is missing; empty if it is that of the tool center.
     """
 
+    trace: Trace
     section: int
     rows: Rows
     path: FedPath
@@ -71,6 +73,19 @@ class Stretch(msgspec.Struct, frozen=True):
     is_rewritten: bool = False
     needs: str = ""
     as_programmed: str = ""
+
+    def line(self, row: int) -> int:
+        """Return the line of a row in the file."""
+        return int(self.trace.blocks.line_in_file[row])
+
+    def quantity(self, value: float, row: int) -> Quantity:
+        """Return a value of a row in the units of its program."""
+        return in_row(value, self.trace.lengths, row)
+
+    @property
+    def enter(self) -> int:
+        """The row that switches the mode of a section on."""
+        return int(self.trace.mode.sections.enter[self.section])
 
     @property
     def known(self) -> Stretch:
@@ -110,7 +125,7 @@ def of_sections(trace: Trace, tool_center: ToolCenter, steps: Sequence[Step], te
         if terms.is_rewritten:
             path = msgspec.structs.replace(path, feed=path.feed * moves.plane_share)
         rows, orders = np.flatnonzero(trace.mode.section == number), steps_of.get(number, ())
-        stretch = Stretch(number, rows, path, orders, knows_z, needs=needs, as_programmed=as_programmed)
+        stretch = Stretch(trace, number, rows, path, orders, knows_z, needs=needs, as_programmed=as_programmed)
         result.append(stretch)
     return result
 
@@ -220,7 +235,7 @@ def outside(trace: Trace, steps: Sequence[Step], rows: Rows, terms: Terms) -> St
         # Such a move has no length in the path, along which F is compared.
         feeds = [feed_step(trace, int(row[move])) for move in np.flatnonzero(comes_from_unknown & ~fed.rapid).tolist()]
         steps = sorted([*steps, *feeds], key=lambda step: step.row)
-    return Stretch(-1, rows, fed, steps, c_scale=scale, is_rewritten=terms.is_rewritten, needs=needs)
+    return Stretch(trace, -1, rows, fed, steps, c_scale=scale, is_rewritten=terms.is_rewritten, needs=needs)
 
 
 def _direction_behind(trace: Trace, row: int) -> float:

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-import msgspec
 import numpy as np
 
-from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Floats, Mask, Rows
 from polarcheck.foundation.states import FeedMode
 from polarcheck.geometry import polar
@@ -19,37 +17,22 @@ from polarcheck.rewrite.compare.comparison_report import Difference
 from polarcheck.rewrite.compare.order_differences import listed, order_differences
 from polarcheck.rewrite.compare.orders import Step
 from polarcheck.rewrite.compare.terms import Terms
-from polarcheck.rules.quantity import Quantity, in_row, rounded
+from polarcheck.rules.quantity import rounded
 
 #: The most changes of F in a list.
 _LISTED = 20
 
 
-class Part(msgspec.Struct, frozen=True):
-    """A stretch and its program."""
-
-    trace: Trace
-    stretch: Stretch
-
-    def line(self, row: int) -> int:
-        """Return the line of a row in the file."""
-        return int(self.trace.blocks.line_in_file[row])
-
-    def quantity(self, value: float, row: int) -> Quantity:
-        """Return a value of a row in the units of its program."""
-        return in_row(value, self.trace.lengths, row)
-
-
-def deviation_of(old: Part, new: Part, tolerance: float) -> PathDeviation | None:
+def deviation_of(old: Stretch, new: Stretch, tolerance: float) -> PathDeviation | None:
     """Return how far the paths are apart; None where neither moves. Raises TooHardError."""
-    if not len(old.stretch.path) and not len(new.stretch.path):
+    if not len(old.path) and not len(new.path):
         return None
-    return path_deviation(old.stretch.path, new.stretch.path, tolerance)
+    return path_deviation(old.path, new.path, tolerance)
 
 
-def differences(old: Part, new: Part, deviation: PathDeviation | None, terms: Terms) -> Iterator[Difference]:
+def differences(old: Stretch, new: Stretch, deviation: PathDeviation | None, terms: Terms) -> Iterator[Difference]:
     """Yield what differs between two parts whose paths are known; deviation: None where the paths were not compared."""
-    has_other_moves = terms.has_other_moves and old.stretch.section >= 0
+    has_other_moves = terms.has_other_moves and old.section >= 0
     is_same_path = not has_other_moves and (deviation is None or deviation.is_within)
     if deviation is not None and not is_same_path:
         yield _of_path(old, new, deviation)
@@ -74,29 +57,29 @@ def differences(old: Part, new: Part, deviation: PathDeviation | None, terms: Te
         text = f"{step.text} stands elsewhere on the path: {places[0]} | {places[1]}"
         return Difference("place", text, places[0], places[1], "", step.line, new_step.line)
 
-    yield from listed(order_differences(old.stretch.steps, new.stretch.steps, terms.tolerance, moved))
+    yield from listed(order_differences(old.steps, new.steps, terms.tolerance, moved))
 
 
 # ---- path ----
 
 
-def _of_path(old: Part, new: Part, deviation: PathDeviation) -> Difference:
+def _of_path(old: Stretch, new: Stretch, deviation: PathDeviation) -> Difference:
     location = deviation.place
     if location is None:
-        missing = [part for part in (old, new) if not len(part.stretch.path)]
+        missing = [part for part in (old, new) if not len(part.path)]
         name = "new" if missing[0] is new else "old"
         moving = old if missing[0] is new else new
-        line = moving.line(int(moving.stretch.path.row[0]))
+        line = moving.line(int(moving.path.row[0]))
         text = f"the {name} revision moves nothing here"
         return Difference(
             "path", text, old_line=line if moving is old else None, new_line=line if moving is new else None
         )
-    old_row, new_row = int(old.stretch.path.row[location.old_move]), int(new.stretch.path.row[location.new_move])
+    old_row, new_row = int(old.path.row[location.old_move]), int(new.path.row[location.new_move])
     at_old = _location(old, old_row, location.old, location.old_z)
     at_new = _location(new, new_row, location.new, location.new_z)
     largest = _largest(old, deviation)
     size = f"{'' if deviation.is_exact else 'up to '}{old.quantity(largest, old_row).shown('length', 1)}"
-    if old.stretch.section < 0 and largest == 0:
+    if old.section < 0 and largest == 0:
         size = "C alone"
     units = [part.quantity(0.0, row).unit for part, row in ((old, old_row), (new, new_row))]
     if units[0] != units[1]:
@@ -105,27 +88,27 @@ def _of_path(old: Part, new: Part, deviation: PathDeviation) -> Difference:
     return Difference("path", text, 0.0, rounded(largest), "mm", old.line(old_row), new.line(new_row))
 
 
-def _largest(old: Part, deviation: PathDeviation) -> float:
+def _largest(old: Stretch, deviation: PathDeviation) -> float:
     """Return the deviation as a length [mm]; outside sections the share of C in it does not count."""
     location = deviation.place
-    if old.stretch.section >= 0 or location is None:
+    if old.section >= 0 or location is None:
         return deviation.largest
     apart = abs(location.old - location.new)
     return apart if apart > ZERO else 0.0
 
 
-def length_of(part: Part, deviation: PathDeviation | None) -> float:
+def length_of(part: Stretch, deviation: PathDeviation | None) -> float:
     """Return the largest deviation of a part [mm]; 0 where nothing moves."""
     return 0.0 if deviation is None else _largest(part, deviation)
 
 
-def _location(part: Part, row: int, point: complex, third: float) -> str:
+def _location(part: Stretch, row: int, point: complex, third: float) -> str:
     """
     Return the point in the units of the program, as `X60 C5 Z-2`.
 
     third: the third coordinate of the path: Z in a section; outside, where the point is Z + 1j*X, the scaled C.
     """
-    trace, section = part.trace, part.stretch.section
+    trace, section = part.trace, part.section
     if section >= 0:
         point = point / complex(trace.path.section_turn[section])
         x, across, z = point.real, point.imag, third
@@ -133,13 +116,13 @@ def _location(part: Part, row: int, point: complex, third: float) -> str:
         words = f"{name}{_number(part, row, across)}"
     else:
         x, z = point.imag, point.real
-        words = f"C{third / part.stretch.c_scale:.3f}".rstrip("0").rstrip(".")
+        words = f"C{third / part.c_scale:.3f}".rstrip("0").rstrip(".")
     x = x / float(trace.lengths.x_factor[row])
-    depth = f" Z{_number(part, row, z)}" if part.stretch.knows_z else ""
+    depth = f" Z{_number(part, row, z)}" if part.knows_z else ""
     return f"X{_number(part, row, x)} {words}{depth}"
 
 
-def _number(part: Part, row: int, value: float) -> str:
+def _number(part: Stretch, row: int, value: float) -> str:
     return part.quantity(value, row).shown("length").partition(" ")[0]
 
 
@@ -149,11 +132,11 @@ def depth_of(stretch: Stretch) -> float | None:
     return rounded(z.min()) if len(z) and stretch.knows_z and not np.isnan(z).any() else None
 
 
-def _of_depth(old: Part, new: Part, tolerance: float) -> Iterator[Difference]:
-    before, after = depth_of(old.stretch), depth_of(new.stretch)
-    if old.stretch.section < 0 or before is None or after is None or abs(before - after) <= tolerance:
+def _of_depth(old: Stretch, new: Stretch, tolerance: float) -> Iterator[Difference]:
+    before, after = depth_of(old), depth_of(new)
+    if old.section < 0 or before is None or after is None or abs(before - after) <= tolerance:
         return
-    rows = [int(part.stretch.path.row[~part.stretch.path.rapid][0]) for part in (old, new)]
+    rows = [int(part.path.row[~part.path.rapid][0]) for part in (old, new)]
     depths = [
         part.quantity(z, row).shown("length") for part, row, z in zip((old, new), rows, (before, after), strict=True)
     ]
@@ -184,15 +167,15 @@ def _lengths(path: SpacePath) -> Floats:
     return np.asarray(np.hypot(np.nan_to_num(length), np.nan_to_num(path.z_end - path.z_start)))
 
 
-def _feeds_along(old: Part, new: Part, terms: Terms) -> Iterator[Difference]:
+def _feeds_along(old: Stretch, new: Stretch, terms: Terms) -> Iterator[Difference]:
     """
     Yield where F differs along the common path; all changes from one value to the same other value are one difference.
     """
-    before, after, length = common_pieces(old.stretch.path, new.stretch.path)
+    before, after, length = common_pieces(old.path, new.path)
     # The ends of moves that are the same up to the tolerance leave slivers between them.
-    totals = [float(_lengths(part.stretch.path).sum()) for part in (old, new)]
+    totals = [float(_lengths(part.path).sum()) for part in (old, new)]
     sliver = 10 * terms.tolerance + 2 * abs(totals[0] - totals[1])
-    differs = feed_differs(old.stretch.path, before, new.stretch.path, after, terms.feed) & (length > sliver)
+    differs = feed_differs(old.path, before, new.path, after, terms.feed) & (length > sliver)
     groups: dict[tuple[str, str], list[tuple[int, int, float]]] = {}
     for index in np.flatnonzero(differs).tolist():
         first, second = int(before[index]), int(after[index])
@@ -200,7 +183,7 @@ def _feeds_along(old: Part, new: Part, terms: Terms) -> Iterator[Difference]:
     for (was, is_now), places in list(groups.items())[:_LISTED]:
         first, second, _ = places[0]
         distance = sum(piece for *_, piece in places)
-        row, new_row = int(old.stretch.path.row[first]), int(new.stretch.path.row[second])
+        row, new_row = int(old.path.row[first]), int(new.path.row[second])
         text = f"{was} has become {is_now} along {old.quantity(distance, row).shown('length')}"
         yield Difference("feed", text, was, is_now, "", old.line(row), new.line(new_row), rounded(distance))
     if len(groups) > _LISTED:
@@ -217,24 +200,23 @@ def feed_differs(old: FedPath, first: Rows, new: FedPath, second: Rows, share: f
     return np.asarray((rapid[0] != rapid[1]) | (at_feed & ((is_known[0] != is_known[1]) | (is_known[0] & ~same))))
 
 
-def _feed(part: Part, move: int) -> str:
+def _feed(part: Stretch, move: int) -> str:
     """`F120 mm/min`, `F0.1 mm/rev`, `rapid traverse`, `F not known`, `no F`."""
-    stretch = part.stretch
-    if stretch.path.rapid[move]:
+    if part.path.rapid[move]:
         return "rapid traverse"
-    feed = float(stretch.path.feed[move])
+    row, feed = int(part.path.row[move]), float(part.path.feed[move])
     if np.isnan(feed):
-        return "no F" if part.trace.feedrate.feed_word[stretch.path.row[move]] < 0 else "F not known"
-    quantity = part.quantity(feed, int(stretch.path.row[move]))
+        return "no F" if part.trace.feedrate.feed_word[row] < 0 else "F not known"
+    quantity = part.quantity(feed, row)
     text = quantity.shown("feed")
-    if stretch.path.feed_mode[move] == FeedMode.PER_REVOLUTION:
+    if part.path.feed_mode[move] == FeedMode.PER_REVOLUTION:
         text = quantity.as_feed.shown("length", 2) + "/rev"
     return f"F{text}"
 
 
-def _feeds_apart(old: Part, new: Part) -> Iterator[Difference]:
+def _feeds_apart(old: Stretch, new: Stretch) -> Iterator[Difference]:
     """Yield a difference if two differing paths do not have the same values of F; each value counts once."""
-    feeds = [list(dict.fromkeys(_feed(part, move) for move in _changes_of_feed(part.stretch))) for part in (old, new)]
+    feeds = [list(dict.fromkeys(_feed(part, move) for move in _changes_of_feed(part))) for part in (old, new)]
     if sorted(feeds[0]) != sorted(feeds[1]):
         texts = [", ".join(values[:_LISTED]) or "none" for values in feeds]
         yield Difference("feed", f"F was {texts[0]} and is {texts[1]}", texts[0], texts[1])
@@ -248,12 +230,12 @@ def _changes_of_feed(stretch: Stretch) -> list[int]:
     return [0, *(np.flatnonzero(changes) + 1).tolist()]
 
 
-def _where(part: Part, row: int) -> tuple[float, float, float]:
+def _where(part: Stretch, row: int) -> tuple[float, float, float]:
     """Return the position of the tool before a row, in the coordinates of the path; NaN if it is not known."""
     path = part.trace.path
     z = float(path.z[row - 1]) if row and not part.trace.blocks.starts[row] else np.nan
-    if part.stretch.section >= 0:
-        point = complex(path.start[row]) * complex(part.trace.path.section_turn[part.stretch.section])
+    if part.section >= 0:
+        point = complex(path.start[row]) * complex(part.trace.path.section_turn[part.section])
         return point.real, point.imag, z
-    c = 0.0 if part.stretch.is_rewritten else float(path.c_angle_before[row]) * part.stretch.c_scale
+    c = 0.0 if part.is_rewritten else float(path.c_angle_before[row]) * part.c_scale
     return z, float(path.x_before[row]), c

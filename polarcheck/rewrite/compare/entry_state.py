@@ -7,9 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from polarcheck.columns.trace import Trace
+from polarcheck.rewrite.compare.compared_sections import Stretch
 from polarcheck.rewrite.compare.comparison_report import Difference
-from polarcheck.rewrite.compare.differences import Part
 from polarcheck.rewrite.compare.orders import speed_in_force
 from polarcheck.rewrite.compare.terms import Terms
 from polarcheck.rules.quantity import rounded
@@ -47,9 +46,9 @@ class Entry(NamedTuple):
     plane: str
 
 
-def entry_of(trace: Trace, section: int) -> Entry:
+def entry_of(of_section: Stretch) -> Entry:
     """Return the state of a section."""
-    enter = int(trace.mode.sections.enter[section])
+    trace, section, enter = of_section.trace, of_section.section, of_section.enter
     compensated = np.flatnonzero((trace.mode.section == section) & trace.compensation.compensates)
     row = int(compensated[0]) if len(compensated) else enter
     angle = float(trace.path.section_entry[section]) % 360 if trace.path.knows_section_entry[section] else np.nan
@@ -69,10 +68,10 @@ def _runs(on: bool) -> str:
     return "runs" if on else "stands"
 
 
-def entry_differences(old: Part, new: Part, *, is_same_machine: bool, terms: Terms) -> Iterator[Difference]:
+def entry_differences(old: Stretch, new: Stretch, *, is_same_machine: bool, terms: Terms) -> Iterator[Difference]:
     """Yield what differs at the start of two sections; across machines only states that mean the same on both."""
-    before, after = (entry_of(part.trace, part.stretch.section) for part in (old, new))
-    lines = [part.line(int(part.trace.mode.sections.enter[part.stretch.section])) for part in (old, new)]
+    before, after = (entry_of(part) for part in (old, new))
+    lines = [part.line(part.enter) for part in (old, new)]
     machine_specific = {"tool", "plane", *_of_one_machine(old, new)}
     for what in Entry._fields:
         if not is_same_machine and what in machine_specific:
@@ -102,7 +101,7 @@ def entry_differences(old: Part, new: Part, *, is_same_machine: bool, terms: Ter
         )
 
 
-def _of_one_machine(old: Part, new: Part) -> Iterator[str]:
+def _of_one_machine(old: Stretch, new: Stretch) -> Iterator[str]:
     """Yield the states that only one of two machines has, or whose codes its profile does not name."""
     traces = old.trace, new.trace
     for what, codes in (("live_tool", "live_tool_on"), ("spindle", "spindle_on")):
@@ -114,9 +113,9 @@ def _of_one_machine(old: Part, new: Part) -> Iterator[str]:
         yield "speed"
 
 
-def _value_text(part: Part, what: str, value: float) -> str:
+def _value_text(part: Stretch, what: str, value: float) -> str:
     if np.isnan(value):
         return "not known"
     if what == "radius":
-        return part.quantity(value, int(part.trace.mode.sections.enter[part.stretch.section])).shown("length", 1)
+        return part.quantity(value, part.enter).shown("length", 1)
     return f"{value:.3f}".rstrip("0").rstrip(".")

@@ -13,8 +13,8 @@ from polarcheck.checking.not_evaluated import bounds_not_reported, unexecuted, u
 from polarcheck.columns.trace import Trace
 from polarcheck.columns.words.unknown_words import UnknownItem
 from polarcheck.foundation.finding import SEVERITIES, Finding, Severity, each_finding
+from polarcheck.rewrite.compare.compared_sections import Stretch
 from polarcheck.rewrite.compare.comparison_report import NotCompared
-from polarcheck.rewrite.compare.differences import Part
 from polarcheck.rewrite.compare.order_differences import order_differences
 from polarcheck.rewrite.compare.order_meanings import shift_steps
 from polarcheck.rewrite.compare.orders import not_comparable, statements
@@ -140,28 +140,28 @@ def _unknown_items(tables: Tables, left_out: Collection[int]) -> list[tuple[str,
     ]
 
 
-def why_not(old: Part, new: Part) -> str:
+def why_not(old: Stretch, new: Stretch) -> str:
     """Return why two sections cannot be compared; empty if they can."""
     known = {
-        "Z": [part.stretch.knows_z for part in (old, new)],
+        "Z": [part.knows_z for part in (old, new)],
         "C at its beginning": [_knows_entry(part) for part in (old, new)],
     }
     for what, is_known in known.items():
         if is_known[0] != is_known[1]:
             return f"{'new' if is_known[0] else 'old'}: {what} is not known"
-    without = [part.stretch.as_programmed for part in (old, new)]
+    without = [part.as_programmed for part in (old, new)]
     if bool(without[0]) != bool(without[1]):
         return f"{'old' if without[0] else 'new'}: {without[0] or without[1]}"
     return ""
 
 
-def not_known_in_both(old: Part) -> Iterator[str]:
+def not_known_in_both(old: Stretch) -> Iterator[str]:
     """Yield what neither of two sections says of the part: the angle or the depth at which the metal goes."""
     if not _knows_entry(old):
         yield "C at its beginning is not known in either: at which angle of the part it mills is not compared"
-    if not old.stretch.knows_z:
+    if not old.knows_z:
         yield "Z is not known in either: how deep it mills is not compared"
 
 
-def _knows_entry(part: Part) -> bool:
-    return bool(part.trace.path.knows_section_entry[part.stretch.section])
+def _knows_entry(part: Stretch) -> bool:
+    return bool(part.trace.path.knows_section_entry[part.section])

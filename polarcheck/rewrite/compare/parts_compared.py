@@ -12,9 +12,9 @@ from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Rows
 from polarcheck.foundation.errors import TooHardError
 from polarcheck.geometry.comparison.path_deviation import PathDeviation
-from polarcheck.rewrite.compare.compared_sections import outside
+from polarcheck.rewrite.compare.compared_sections import Stretch, outside
 from polarcheck.rewrite.compare.comparison_report import Difference
-from polarcheck.rewrite.compare.differences import Part, deviation_of, differences, length_of
+from polarcheck.rewrite.compare.differences import deviation_of, differences, length_of
 from polarcheck.rewrite.compare.orders import Step
 from polarcheck.rewrite.compare.terms import Terms
 from polarcheck.rules.wording.written import executed_word
@@ -36,14 +36,14 @@ class Measured(msgspec.Struct, frozen=True):
     differences: Sequence[Difference] = ()
 
 
-def measured(old: Part, new: Part, terms: Terms) -> Measured:
+def measured(old: Stretch, new: Stretch, terms: Terms) -> Measured:
     """Compare two parts. Moves that are not known in both are left out; those of one alone are a reason not to."""
-    has_other_moves = terms.has_other_moves and old.stretch.section >= 0
-    not_known = [f"{name}: {part.stretch.needs}" for name, part in (("old", old), ("new", new)) if part.stretch.needs]
-    counts = [np.count_nonzero(~part.stretch.path.is_known) for part in (old, new)]
+    has_other_moves = terms.has_other_moves and old.section >= 0
+    not_known = [f"{name}: {part.needs}" for name, part in (("old", old), ("new", new)) if part.needs]
+    counts = [np.count_nonzero(~part.path.is_known) for part in (old, new)]
     if not_known and (len(not_known) < len((old, new)) or counts[0] != counts[1]):
         return Measured(not_known[0])
-    old, new = (Part(part.trace, part.stretch.known) for part in (old, new))
+    old, new = old.known, new.known
     try:
         deviation = None if has_other_moves else deviation_of(old, new, terms.tolerance)
     except TooHardError as error:
@@ -61,23 +61,23 @@ def outside_compared(
         radius = abs(float(traces[0].path.x_before[rows[0][0]]))
         angle = math.degrees(2 * terms.tolerance / radius) if radius > terms.tolerance else 0.0
         terms = msgspec.structs.replace(terms, angle=max(terms.angle, angle))
-    old = Part(traces[0], outside(traces[0], steps[0], rows[0], terms.of_old))
-    new = _turned_to(old, Part(traces[1], outside(traces[1], steps[1], rows[1], terms.of_new)))
+    old = outside(traces[0], steps[0], rows[0], terms.of_old)
+    new = _turned_to(old, outside(traces[1], steps[1], rows[1], terms.of_new))
     return measured(old, new, terms)
 
 
-def _turned_to(old: Part, new: Part) -> Part:
+def _turned_to(old: Stretch, new: Stretch) -> Stretch:
     """Return the new part with C shifted by full turns towards the old one: the C after a section counts its turns."""
-    paths = old.stretch.path, new.stretch.path
+    paths = old.path, new.path
     if not len(paths[0]) or not len(paths[1]):
         return new
-    turn = 360 * new.stretch.c_scale
+    turn = 360 * new.c_scale
     by = turn * round(float(paths[0].z_start[0] - paths[1].z_start[0]) / turn)
     path = msgspec.structs.replace(paths[1], z_start=paths[1].z_start + by, z_end=paths[1].z_end + by)
-    return Part(new.trace, msgspec.structs.replace(new.stretch, path=path))
+    return msgspec.structs.replace(new, path=path)
 
 
-def _points(old: Part, new: Part) -> Iterator[Difference]:
+def _points(old: Stretch, new: Stretch) -> Iterator[Difference]:
     """Yield a difference where a number has no decimal point, and has one in the other revision."""
     if old.trace.machine != new.trace.machine:
         return
@@ -96,9 +96,9 @@ def _points(old: Part, new: Part) -> Iterator[Difference]:
     yield Difference("point", text, *texts, "", *lines)
 
 
-def _coordinates(part: Part) -> Rows:
+def _coordinates(part: Stretch) -> Rows:
     """Return the coordinates among the executed words of a part."""
-    trace, rows = part.trace, part.stretch.rows
+    trace, rows = part.trace, part.rows
     if not len(rows):
         return rows
     low, high = np.searchsorted(trace.run.row, (rows[0], rows[-1] + 1))

@@ -29,7 +29,7 @@ from polarcheck.rewrite.compare.comparison_report import (
     SectionPair,
     Side,
 )
-from polarcheck.rewrite.compare.differences import Part, depth_of
+from polarcheck.rewrite.compare.differences import depth_of
 from polarcheck.rewrite.compare.entry_state import entry_differences
 from polarcheck.rewrite.compare.not_compared import Run, added_findings, incomparable, not_known_in_both, why_not
 from polarcheck.rewrite.compare.orders import steps
@@ -177,18 +177,18 @@ class RunPair:
         pairs = []
         for number, partner in enumerate(self._partner.tolist()):
             keep_time()
-            side = _side(self._old[number], self._traces[0], reports[0])
+            side = _side(self._old[number], reports[0])
             if partner < 0:
                 text = f"the section of line {side.line} is missing"
                 gone = Difference("section", text, old_line=side.line)
                 pairs.append(SectionPair(side, None, "missing", None, True, [gone]))
                 continue
-            new_side = _side(self._new[partner], self._traces[1], reports[1])
+            new_side = _side(self._new[partner], reports[1])
             pairs.append(self._pair(number, partner, side, new_side, reported))
         taken = set(self._partner.tolist())
         for number, section in enumerate(self._new):
             if number not in taken:
-                side = _side(section, self._traces[1], reports[1])
+                side = _side(section, reports[1])
                 more = Difference("section", f"the section of line {side.line} is added", new_line=side.line)
                 pairs.append(SectionPair(None, side, "added", None, True, [more]))
         return pairs
@@ -196,7 +196,7 @@ class RunPair:
     def _pair(
         self, number: int, partner: int, side: Side, new_side: Side, reported: set[tuple[str, object, object]]
     ) -> SectionPair:
-        old, new = Part(self._traces[0], self._old[number]), Part(self._traces[1], self._new[partner])
+        old, new = self._old[number], self._new[partner]
         state = [*_left_open(old, new)]
         state += [
             difference
@@ -211,8 +211,8 @@ class RunPair:
         result = Measured(why) if why else measured(old, new, self._terms)
         why = result.reason
         self._take(result, f"section of line {side.line} (old) and {new_side.line} (new)")
-        if not why and old.stretch.as_programmed:
-            reason = f"section of line {side.line}: {old.stretch.as_programmed}: compared as programmed, for any R"
+        if not why and old.as_programmed:
+            reason = f"section of line {side.line}: {old.as_programmed}: compared as programmed, for any R"
             self.not_compared.append(NotCompared(reason, matters=False))
         if not why:
             self.not_compared += [
@@ -252,11 +252,11 @@ class RunPair:
             self.measured.append((result.length, result.deviation.is_exact))
 
 
-def _left_open(old: Part, new: Part) -> Iterator[Difference]:
+def _left_open(old: Stretch, new: Stretch) -> Iterator[Difference]:
     """Yield a difference if only one of the revisions switches the polar mode off after the section."""
-    is_left = [bool(part.trace.mode.sections.left[part.stretch.section]) for part in (old, new)]
+    is_left = [bool(part.trace.mode.sections.left[part.section]) for part in (old, new)]
     if is_left[0] != is_left[1]:
-        lines = [part.line(int(part.trace.mode.sections.enter[part.stretch.section])) for part in (old, new)]
+        lines = [part.line(part.enter) for part in (old, new)]
         text = "the polar mode is left no more" if is_left[0] else "the polar mode is left now, and was not"
         yield Difference(
             "section", text, "left" if is_left[0] else "open", "left" if is_left[1] else "open", "", *lines
@@ -269,13 +269,12 @@ def _gaps(trace: Trace, sections: Rows) -> list[tuple[int, int]]:
     return list(zip([0, *leave.tolist()], [*enter.tolist(), len(trace)], strict=True))
 
 
-def _side(section: Stretch, trace: Trace, reports: Sequence[PolarSection]) -> Side:
-    sections, number = trace.mode.sections, section.section
-    lines = trace.blocks.line_in_file
+def _side(section: Stretch, reports: Sequence[PolarSection]) -> Side:
+    trace, number = section.trace, section.section
     report = reports[number] if number < len(reports) else None
     return Side(
-        line=int(lines[sections.enter[number]]),
-        end_line=int(lines[min(int(sections.last[number]), len(trace) - 1)]),
+        line=section.line(section.enter),
+        end_line=section.line(min(int(trace.mode.sections.last[number]), len(trace) - 1)),
         depth=depth_of(section),
         time=report.time if report else None,
         c_feed=report.c_feed if report else None,
