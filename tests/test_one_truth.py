@@ -605,3 +605,71 @@ def test_a_part_that_depends_on_an_unknown_condition_is_not_known(control: str, 
     # Behind the section it decides nothing of the part.
     text = program(control, ("/M30" if control != "okuma-osp" else "/M2", f"/{words}/M30"))
     assert in_one_line(tables_of(text, control, CUTTER)).startswith("hexagon, 36.000")
+
+
+@looped(
+    ("control", "first", "last"),
+    [
+        ("fanuc-30i", "G97 S3000", "M13"),
+        ("siemens-transmit", "SETMS(2) S2=3000 M2=3", "M8"),
+        ("okuma-osp", "G97 SB=3000", "M13"),
+    ],
+)
+def test_the_words_of_a_block_may_stand_in_two_blocks(control: str, first: str, last: str, tmp_path: Path) -> None:
+    text = program(control)
+    whole = first if first in text and last not in text else f"{first} {last}"
+    text = text.replace(whole, f"{first} {last}")
+    for divided, code in ((f"{first}\n{last}", 0), (f"{last}\n{first}", 1), (f"{first}\nG4 F1\n{last}", 1)):
+        other = text.replace(f"{first} {last}", divided)
+        assert compared(tmp_path, control, text, other).exit_code == code
+        assert certified(tmp_path, control, text, other).exit_code == code
+
+
+def test_a_word_that_belongs_to_a_code_stands_beside_it(tmp_path: Path) -> None:
+    sound, text = program("haas-lathe"), program("haas-lathe", ("P3000 M133", "P3000/M133"))
+    assert compared(tmp_path, "haas-lathe", sound, text).exit_code > 0
+    assert certified(tmp_path, "haas-lathe", sound, text).exit_code == 1
+
+
+@looped("control", ["fanuc-30i", "haas-lathe", "gsk-988"])
+def test_a_distance_from_where_it_is_not_known_is_compared(control: str, tmp_path: Path) -> None:
+    texts = [program(control, ("/T0101", f"/G0 {words}/T0101")) for words in ("W0", "W-1.", "W-1", "W-2.", "U5.")]
+    for old, new, code in ((0, 1, 1), (1, 3, 1), (1, 4, 1), (1, 1, 0)):
+        changed = texts[new].replace("W-1.", "W-1.0")
+        assert compared(tmp_path, control, texts[old], changed).exit_code == code
+        assert certified(tmp_path, control, texts[old], changed).exit_code == code
+
+
+@looped(
+    ("control", "words"), [("siemens-transmit", "R[R500]=4"), ("okuma-osp", "VC[VC500]=5"), ("fanuc-30i", "#[#500]=5.")]
+)
+def test_a_variable_that_nobody_reads_changes_nothing(control: str, words: str, tmp_path: Path) -> None:
+    sound, text = program(control), program(control, ("/G0 X60", f"/{words}/G0 X60"))
+    # By the number of a variable FANUC sets offsets, too.
+    is_offset = control == "fanuc-30i"
+    assert report_of(text, control, CUTTER).verdict == ("unverified" if is_offset else "pass")
+    result = compared(tmp_path, control, sound, text)
+    assert (result.exit_code, f"{words} is added" in result.stdout) == (int(is_offset), is_offset)
+
+
+@pytest.mark.ci
+@looped("words", ["G54", "G52 X1.", "#2001=5.", "T0102", "G53 X0."])
+def test_what_displaces_the_contour_is_not_written(words: str, tmp_path: Path) -> None:
+    (file,) = written(tmp_path, program("fanuc-30i", ("/G42", f"/{words}/G42")))
+    for command in (
+        ["compensate", "--center", "--machine", "fanuc-30i"],
+        ["convert", "--from", "fanuc-30i", "--to", "gsk-988"],
+    ):
+        result = run(*command, "--no-config", "--tool", CUTTER, file)
+        assert (result.exit_code, result.stdout) == (2, ""), command
+
+
+def test_a_frame_that_ends_at_the_switch_is_no_depth(tmp_path: Path) -> None:
+    control = "siemens-transmit"
+    plain = program(control)
+    # Before TRANSMIT it moves the approach alone, in the mode the depth as well.
+    for place, depth in (("/G0 X60", "Z-4.000"), ("/G1 X28", "Z-7.000")):
+        text = program(control, (place, f"/TRANS Z-3{place}"))
+        assert in_one_line(tables_of(text, control, CUTTER)) == f"hexagon, 36.000 across flats, to {depth}"
+        assert compared(tmp_path, control, plain, text).exit_code == 1
+        assert certified(tmp_path, control, plain, text).exit_code == 1

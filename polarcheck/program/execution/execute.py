@@ -197,7 +197,12 @@ def _assign(state: State, statement: Statement, block: int) -> None:
     if is_of_offset:
         value = step if step == step else UNKNOWN if after is None else after
         state.rows.add_assigned(block, Assigned(round(number or 0), value, step == step), state.depth)
-    elif number is not None and number != number and block not in state.unknown_targets:
+    elif (
+        number is not None
+        and number != number
+        and macro.language == "custom-macro"  # those of other languages are no offsets
+        and block not in state.unknown_targets
+    ):
         state.unknown_targets.add(block)
         state.rows.add_assigned(block, Assigned(NO_VARIABLE, UNKNOWN), state.depth)
     if number in macro.alarm_variables or number in macro.stop_variables:

@@ -24,7 +24,7 @@ from polarcheck.reports.pages.executed import Move
 from polarcheck.reports.pages.trace_report import without_lines
 from polarcheck.rewrite.compare.compared_sections import outside
 from polarcheck.rewrite.compare.comparison_report import Difference
-from polarcheck.rewrite.compare.order_differences import listed, order_differences
+from polarcheck.rewrite.compare.order_differences import PLACE, listed, order_differences
 from polarcheck.rewrite.compare.orders import Step, feed_unit, rows_behind, steps
 from polarcheck.rewrite.compare.terms import ANGLE, Terms
 from polarcheck.rewrite.writing.new_blocks import without_comments
@@ -80,7 +80,7 @@ class GoldenOrder(msgspec.Struct, frozen=True):
 
     def step(self, number: int) -> Step:
         """Return the order in the form in which orders are compared; the section is one of its words."""
-        place = f"{self.channel or ''} {self.section} {self.before}"
+        place = f"{PLACE}{self.channel or ''} {self.section} {self.before}"
         values = tuple(np.nan if value is None else value for value in self.values)
         return Step(number, self.line or 0, (place, *self.tokens), values, self.order)
 
@@ -138,9 +138,10 @@ def _planes_at_entry(trace: Trace) -> Iterator[Step]:
 def _moves_outside(trace: Trace) -> Iterator[Step]:
     """
     Yield the moves outside of sections: X as a radius, Z [mm], C [deg] where each ends, F of those at feed, and the
-    centers of arcs.
+    centers of arcs; and distances from where it is not known.
     """
     stretch = outside(trace, (), np.arange(len(trace)), Terms(ANGLE))
+    yield from (step for step in stretch.steps if not step.tokens[0].startswith("F"))  # F is that of the move, below
     path, lines = stretch.path, trace.blocks.line_in_file[stretch.path.row].tolist()
     places = zip(path.end.imag.tolist(), path.end.real.tolist(), (path.z_end / stretch.c_scale).tolist(), strict=True)
     motions = trace.axes.motion[path.row].tolist()

@@ -194,13 +194,22 @@ def outside(trace: Trace, steps: Sequence[Step], rows: Rows, terms: Terms) -> St
     left = np.flatnonzero((trace.mode.section < 0) & (before(trace.mode.section, starts, -1) >= 0))
     earlier[0][left] = np.abs(path.end[left - 1])
     columns = [(column[row], after[row]) for column, after in zip(earlier, (path.x, path.z, path.c_angle), strict=True)]
-    needs = ""
+    needs, of_unknown = "", list[Step]()
     written = (("X", "U"), ("Z", "W"), trace.machine.polar.rotary_words)
     comes_from_unknown = np.zeros(len(row), bool)
     for (begins, after), words in zip(columns, written, strict=True):
         is_named = trace.blocks.has(*words)[row]
         comes_from_unknown |= np.isnan(begins) & is_named
         lost = np.isnan(after) & is_named
+        if lost.any() and not terms.is_kept:
+            distance = _distance(trace, words)[row]
+            by_distance = np.flatnonzero(lost & ~np.isnan(distance))
+            of_unknown += [
+                _step_by(trace, words[1], at, by)
+                for at, by in zip(row[by_distance].tolist(), distance[by_distance].tolist(), strict=True)
+                if by
+            ]
+            lost[by_distance] = False
         if lost.any() and not needs:
             needs = f"{words[0]} of line {int(trace.blocks.line_in_file[row[np.argmax(lost)]])} is not known"
     if terms.is_rewritten and len(rows):
@@ -234,8 +243,23 @@ def outside(trace: Trace, steps: Sequence[Step], rows: Rows, terms: Terms) -> St
     if not terms.is_kept:
         # Such a move has no length in the path, along which F is compared.
         feeds = [feed_step(trace, int(row[move])) for move in np.flatnonzero(comes_from_unknown & ~fed.rapid).tolist()]
-        steps = sorted([*steps, *feeds], key=lambda step: step.row)
+        steps = sorted([*steps, *of_unknown, *feeds], key=lambda step: step.row)
     return Stretch(trace, -1, rows, fed, steps, c_scale=scale, is_rewritten=terms.is_rewritten, needs=needs)
+
+
+def _distance(trace: Trace, words: tuple[str, str]) -> Floats:
+    """Return the distance that each row goes along an axis by increments [mm or deg]; NaN without one."""
+    axis = words[0]
+    lengths, is_rotary = trace.lengths, words == trace.machine.polar.rotary_words
+    values = [trace.coordinates.angle_of(word) if is_rotary else lengths.length_of(word) for word in words]
+    distance = np.where(trace.modal.is_step(axis), values[0], np.where(trace.blocks.has(axis), np.nan, values[1]))
+    return np.asarray(distance * lengths.x_factor if axis == "X" else distance)
+
+
+def _step_by(trace: Trace, word: str, row: int, distance: float) -> Step:
+    """Return a distance from a position that is not known as an order."""
+    text = f"{word}{distance:.10g} from where it is not known"
+    return Step(row, int(trace.blocks.line_in_file[row]), (f"{word} from an unknown position",), (distance,), text)
 
 
 def _direction_behind(trace: Trace, row: int) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
 from difflib import SequenceMatcher
 
@@ -12,6 +13,11 @@ from polarcheck.rewrite.compare.orders import Step
 _PAIRED = 2000
 #: The most differences in a list.
 _LISTED = 20
+#: How the token begins that says where an order of a golden trace stands.
+PLACE = "/"
+_M_WORD = re.compile(r"M[0-9.]+$")
+#: Words that mean in a block of their own what they mean beside an M word: codes, speeds and tools.
+_DIVISIBLE = re.compile(rf"{PLACE}|[GM][0-9.]+$|[ST@]$|[A-Z]+[0-9]*=$")
 _Change = tuple[Sequence[Step], Sequence[Step]]
 
 
@@ -28,7 +34,13 @@ def order_differences(
     orders in their positions.
     """
     pairs, changes = aligned(before, after)
-    differences = [_of_change(*change) for change in changes]
+    differences = []
+    for change in changes:
+        pieces = [[piece for step in steps for piece in _pieces(step)] for steps in change]
+        if [piece.tokens for piece in pieces[0]] == [piece.tokens for piece in pieces[1]]:
+            pairs += zip(*pieces, strict=True)
+        else:
+            differences.append(_of_change(*change))
     for step, new_step in pairs:
         if not _has_same_values(step, new_step, tolerance):
             differences.append(_of_change([step], [new_step]))
@@ -70,6 +82,21 @@ def aligned(before: Sequence[Step], after: Sequence[Step]) -> tuple[list[tuple[S
         else:
             changes.append((removed[low:high], added[new_low:new_high]))
     return pairs, changes
+
+
+def _pieces(step: Step) -> list[Step]:
+    """
+    Return an order as blocks may divide it, each M word behind the other words: `S3000 M13` is `S3000`, `M13`.
+
+    A block with other words, as P beside M133, is one piece.
+    """
+    codes = [token for token in step.tokens if _M_WORD.match(token)]
+    if not codes or not all(_DIVISIBLE.match(token) for token in step.tokens):
+        return [step]
+    others = tuple(token for token in step.tokens if token not in codes)
+    place = others[:1] if others[:1] and others[0][0] == PLACE else ()
+    first = [step._replace(tokens=others)] if others != place else []
+    return [*first, *(step._replace(tokens=(*place, code), values=(), text=code) for code in codes)]
 
 
 def _has_same_values(step: Step, new_step: Step, tolerance: float) -> bool:

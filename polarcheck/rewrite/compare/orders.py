@@ -13,6 +13,7 @@ from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Floats, Mask, Rows
 from polarcheck.foundation.patterns import lazy_pattern
 from polarcheck.foundation.states import MM_PER_INCH, MOVES, STATES, FeedMode, Units
+from polarcheck.program.execution.run import NO_VARIABLE, Assigned
 from polarcheck.program.machines.axis_table import FIRST_NAMED, OF_SPINDLE
 from polarcheck.program.machines.code_tables import code_set
 from polarcheck.program.reading.excerpt import shortened
@@ -209,8 +210,7 @@ class _Reader:
         if parts and self._is_same_machine and self._trace.modal.in_cycle[row]:
             parts.append(self._feed(row))
         if (assigned := self._trace.run.assigned.get(row)) is not None:
-            name = f"{assigned.name}={'+' * assigned.is_step}"
-            parts.append((name, assigned.value, f"{name}{assigned.value:.10g}"))
+            parts.append(self._setting(row, assigned))
         if self._turns_side[row]:
             side = f"G{int(self._trace.compensation.side[row])}"
             parts.insert(0, (side, None, side))
@@ -251,6 +251,15 @@ class _Reader:
             written = executed_word(self._trace.run, index)
             return token, None, text if written[:1].upper() == "G" else written
         return (name, self._length(name, row, value), text) if is_special or name not in self._of_moves else None
+
+    def _setting(self, row: int, assigned: Assigned) -> tuple[str, float, str]:
+        """Return token, value and text of an assignment; as it is written where nobody knows to which variable."""
+        if assigned.variable == NO_VARIABLE:
+            content = without_comments(self._trace.text, int(self._trace.run.block[row])).upper()
+            written = "".join(_NUMBER.sub("", content).split())
+            return written, assigned.value, written
+        name = f"{assigned.name}={'+' * assigned.is_step}"
+        return name, assigned.value, f"{name}{assigned.value:.10g}"
 
     def _feed(self, row: int) -> tuple[str, float | None, str]:
         """

@@ -34,6 +34,8 @@ OF_ORDERS = frozenset(
 _OF_LIMITS = frozenset(
     ("c-acceleration-above-limit", "c-feed-above-limit", "path-near-center", "x-acceleration-above-limit")
 )
+#: Rules about what displaces the contour in the mode: the new program is to have none, even where the original has.
+_OF_CENTER = frozenset(("offset-changed-in-polar", "origin-shifted-in-polar"))
 #: Chords of arcs and the end of the search add no more than this share to a measured distance.
 _SHARE_OF_CHORDS = 0.05
 #: Further differences than this are not listed.
@@ -233,7 +235,10 @@ def _times(result: Comparison) -> Iterator[Refusal]:
 def _added_findings(
     original: Original, new: Original, origin: Sequence[int], lowest: Severity
 ) -> Iterator[tuple[Rule, Severity, Refusal]]:
-    """Findings of a check from a severity up that the original does not have, with their rules and severities."""
+    """
+    Findings of a check from a severity up that the original does not have, with their rules and severities; those that
+    displace the contour in any case.
+    """
     rules = load_all()
     before, after = (
         findings_of([("", program.tables)], program.settings.severities, lowest, inline=program.settings.inline)
@@ -246,6 +251,7 @@ def _added_findings(
         of_rule.setdefault(finding.rule, []).append(finding)
     for rule, findings in of_rule.items():
         added = [finding for finding in findings if (rule, line_of(origin, finding.line)) not in lines]
-        for finding in added[: max(len(findings) - counts_before[rule], 0)]:
+        added = findings if rule in _OF_CENTER else added[: max(len(findings) - counts_before[rule], 0)]
+        for finding in added:
             text = f"{finding.rule} in line {finding.line} of the result: {finding.message}"
             yield rules[rule], SEVERITIES[finding.severity], Refusal(line_of(origin, finding.line), text)
