@@ -464,3 +464,68 @@ def told(text: str) -> list[tuple[str, int]]:
     """What is said in which line, of the contour with a cutter of 16 mm in a bar of 39 mm."""
     findings = report_of(text, "fanuc", "9:radius=8", job={"stock": {"diameter": 39}}).findings
     return [(finding.message, finding.line) for finding in findings if finding.severity != "note"]
+
+
+#: An octagon with leads on the extensions of two sides, which cross at its corner.
+CROSSED = [
+    *("G42 X36.792 C11.863 F200", "X0. C19.483", "X-27.554 C13.777", "X-38.966 C0.", "X-27.554 C-13.777"),
+    *("X0. C-19.483", "X27.554 C-13.777", "X38.966 C0.", "X23.726 C18.396"),
+]
+#: The same with a hexagon.
+HEXAGON_CROSSED = [
+    *("G42 X42.392 C6.238 F180", "X0. C18.475", "X-32. C9.238"),
+    *("C-9.238", "X0. C-18.475", "X32. C-9.238", "C15.238"),
+]
+#: A square with chamfers.
+SMALL = [
+    *("G42 X40. C0. F200", "C17.5", "X35. C20.", "X-35.", "X-40. C17.5", "C-17.5", "X-35. C-20."),
+    *("X35.", "X40. C-17.5", "C0."),
+]
+
+
+@pytest.mark.ci
+@looped(
+    ("contour", "right", "wrong", "word"),
+    [
+        (CROSSED, "G42 X36.792 C11.863 F200", "G42 X16.792 C11.863 F200", "X36.792"),
+        (HEXAGON_CROSSED, "X32. C-9.238", "X33. C-9.238", "X32."),
+        # No size without a point is taken for another one that is within its last digit.
+        (SMALL, "X-35. C-20.", "X-35. C-220.", "C-20."),
+    ],
+)
+def test_what_makes_it_symmetric_is_likelier_than_what_closes_it(
+    contour: list[str], right: str, wrong: str, word: str
+) -> None:
+    ramp = "G1 X76. C20. F1500"
+    sound = "\n".join([*HEAD[:-2], ramp, HEAD[-1], *contour, "G40 X70. C22.", *TAIL[1:]]) + "\n"
+    assert told_of_small_cutter(sound) == []
+    ((message, line),) = told_of_small_cutter(sound.replace(right, wrong))
+    assert sound.splitlines()[line - 1] == right
+    assert f"with {word} " in message
+
+
+def test_a_distance_that_is_wrong_is_not_explained_by_reading_all_of_them_as_positions() -> None:
+    moves = ["X-17.966 C5.837", "X-11.103 C-15.282", "X11.103 C-15.282", "X17.966 C5.837", "X0 C18.89"]
+    head = ["O1", "T0101", "G90 G94 G0 X60. Z2. C0", "G12.1", "G1 X20. C18.445 F800", "Z-4. F300"]
+    path = ["G42 X13. C9.445 F170", "G91", *moves, "G90", "G40 X22. C11.445", "Z2.", "G13.1", "M30"]
+    sound = "\n".join([*head, *path]) + "\n"
+    assert report_of(sound, "mitsubishi-m700", "1:radius=5").findings == []
+    (finding,) = report_of(sound.replace("X-11.103", "X-22.206"), "mitsubishi-m700", "1:radius=5").findings
+    assert "with X-11.103 it would be a regular pentagon" in finding.message
+
+
+def test_no_other_number_is_named_where_another_pass_has_the_number() -> None:
+    ramp = ["G1 X50.392 C13.166 F800"]
+    passes = [line for z in ("Z-2.", "Z-4.") for line in (*ramp, z, *HEXAGON_CROSSED, "G40 X48.", "Z2.")]
+    lines = [*HEAD[:-2], *passes, *TAIL[2:]]
+    assert told_of_small_cutter("\n".join(lines) + "\n") == []
+    last = len(lines) - lines[::-1].index("C15.238") - 1
+    ((message, line),) = told_of_small_cutter("\n".join([*lines[:last], "C155.238", *lines[last + 1 :]]) + "\n")
+    assert line == last + 1
+    assert "C9.238" not in message
+
+
+def told_of_small_cutter(text: str) -> list[tuple[str, int]]:
+    """What is said in which line, with a cutter of 10 mm."""
+    findings = report_of(text, "fanuc-30i", "1:radius=5").findings
+    return [(finding.message, finding.line) for finding in findings if finding.severity != "note"]

@@ -89,28 +89,36 @@ def _absolute(trace: Trace, word: int) -> Iterator[list[CodeEdit]]:
         yield [CodeEdit(row, edit, [_at_head(trace, row, codes[0])])]
 
 
-def unneeded(trace: Trace, own: Rows) -> Iterator[list[CodeEdit]]:
+def unneeded_sides(trace: Trace, own: Rows) -> Iterator[list[CodeEdit]]:
     """
-    Without a code of compensation or of increments in the middle of a path, or alone in a block beside it.
+    Without a code of compensation in the middle of a path, or alone in a block beside it.
 
     The one code that begins the compensation of a path is needed: without it nothing could be told of its ramps. One
     that begins it on an arc, where no G40 takes it back, is not.
     """
-    machine = trace.machine
-    sides, steps = (
-        trace.blocks.code_indices(*(code for key in keys for code in machine.codes(key)))
-        for keys in (("compensation_left", "compensation_right"), ("incremental", "absolute"))
-    )
-    of_side = trace.run.row[sides]
+    words = _codes(trace, "compensation_left", "compensation_right")
+    of_side = trace.run.row[words]
     is_in_force = trace.compensation.side_before[of_side] != Side.OFF
-    comes_again = np.arange(len(sides)) < np.searchsorted(of_side, own[-1], side="right") - 1
+    comes_again = np.arange(len(words)) < np.searchsorted(of_side, own[-1], side="right") - 1
     ramps = np.append(np.flatnonzero(trace.compensation.starts_up), own[0])
     ramp = ramps[np.searchsorted(ramps[:-1], of_side)]
     has_cancel = (trace.compensation.writes_cancel & (trace.mode.section == trace.mode.section[own[0]]))[own[0] :].any()
     is_on_arc = ~has_cancel & trace.path.is_arc[ramp]
-    words = np.sort(np.append(sides[is_in_force | comes_again | is_on_arc], steps))
-    rows = trace.run.row[words]
-    for word, row in side_by_side(words, rows):
+    yield from _without(trace, own, words[is_in_force | comes_again | is_on_arc])
+
+
+def unneeded_steps(trace: Trace, own: Rows) -> Iterator[list[CodeEdit]]:
+    """Without a code of increments in the middle of a path, or alone in a block beside it."""
+    yield from _without(trace, own, _codes(trace, "incremental", "absolute"))
+
+
+def _codes(trace: Trace, *keys: str) -> Rows:
+    return trace.blocks.code_indices(*(code for key in keys for code in trace.machine.codes(key)))
+
+
+def _without(trace: Trace, own: Rows, words: Rows) -> Iterator[list[CodeEdit]]:
+    """The edits that leave out one of these codes each, where it is inside of a path, or alone beside it."""
+    for word, row in side_by_side(words, trace.run.row[words]):
         is_inside = own[0] < row < own[-1]
         is_alone = own[0] - _NEAR <= row <= own[-1] + _NEAR and not trace.path.travels[row]
         if (is_inside or is_alone) and is_plain(trace.run, row):

@@ -21,7 +21,8 @@ from polarcheck.checking.code_edits import (
     exchanged,
     missing_steps,
     ramp_edits,
-    unneeded,
+    unneeded_sides,
+    unneeded_steps,
     unskipped,
 )
 from polarcheck.checking.edits import origins
@@ -30,6 +31,7 @@ from polarcheck.checking.hidden_findings import MOST_ROWS, REPORTS, edited, is_t
 from polarcheck.columns.contour.correction import Correction
 from polarcheck.columns.contour.likely_edits import (
     AS_LIKELY,
+    LEAST_GAIN,
     LEAST_IF_WHOLE,
     Likely,
     correction_by,
@@ -42,6 +44,7 @@ from polarcheck.columns.words.slips import WORD
 from polarcheck.foundation.arrays import Rows
 from polarcheck.foundation.errors import TooHardError
 from polarcheck.foundation.finding import SEVERITIES, WARNING, Finding
+from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.rules.editing import Replace, in_place_of, is_plain, with_word, without, words_of
 from polarcheck.rules.places import PLACES
 from polarcheck.rules.rule import Hits
@@ -168,11 +171,15 @@ class _Search:
         # What is explained is mended when the next path is tried, which may be compared with it.
         self.mended: list[Replace] = []
         self.symptoms = self._symptoms(engine)
+        # By line of a block that differs from that of another pass, the line of the other one.
+        self.compared: dict[int, int] = {}
 
     def explanations(self, findings: Sequence[Finding]) -> Iterator[_Explained]:
         """One explanation at most for each path with a symptom, or two of two mistakes."""
         trace = self.trace
         lines = set[int]().union(*map(_lines, findings))
+        for pair in (_lines(finding) for finding in findings if finding.rule == _COMPARES):
+            self.compared |= {line: other for line in pair for other in pair - {line}}
         rows = np.flatnonzero(np.isin(trace.blocks.line, [*lines]) & (trace.mode.section >= 0))
         sections = np.flatnonzero(np.bincount(trace.mode.section[rows], minlength=1)).tolist()
         loops = list(islice(written_loops(trace, sections), _MOST_LOOPS))
@@ -198,26 +205,30 @@ class _Search:
         those of other paths with a symptom, where another one may come, as by a comparison of passes.
         """
         of_code = chain.from_iterable(
-            search(self.trace, loop.row[1:]) for search in (unskipped, unneeded, missing_steps)
+            search(self.trace, loop.row[1:]) for search in (unskipped, unneeded_sides, missing_steps)
         )
         whole = self._by_codes(of_code, own, others, 1)
         partly: list[_Explained] = []
         shows_more: list[_Explained] = []
-        for likely in () if whole else likely_edits(self.trace, loop, _TRIALS, LEAST_IF_WHOLE):
+        rules = {rule for rule, line in self.symptoms if line in own}
+        # What makes the path symmetric is named already: only what is clear is likelier.
+        least = LEAST_GAIN if rules == {REPORTS} else LEAST_IF_WHOLE
+        for likely in () if whole else likely_edits(self.trace, loop, _TRIALS, least):
             best, reach = (whole, AS_LIKELY) if whole else (partly, _LESS_LIKELY)
             if best and best[0].likely.gain - likely.gain > reach:
                 break
-            edits = self._edits(loop, likely)
-            found = self._tried(likely, int(loop.row[likely.edit.corner]), edits, others) if edits else None
+            row = int(loop.row[likely.edit.corner])
+            edits = [] if self._contradicts(row, likely.edit) else self._edits(loop, likely)
+            found = self._tried(likely, row, edits, others) if edits else None
             if found is not None and not likely.is_clear and all(rule in _OF_CUTTER for rule, _ in found.gone):
                 continue
             if found is not None and own.isdisjoint(line for _, line in found.left):
                 whole.append(found)
             elif found is not None and likely.is_clear:
                 (shows_more if found.left - self.symptoms else partly).append(found)
-        if not whole:
-            whole = self._by_codes(as_in_passes(self.engine, loop.row[1:]), own, others, _RULES_OF_CODE)
-        rules = {rule for rule, line in self.symptoms if line in own}
+        whole = whole or self._by_codes(as_in_passes(self.engine, loop.row[1:]), own, others, _RULES_OF_CODE)
+        # Increments that are read as positions make a path of which little can be told.
+        whole = whole or self._by_codes(unneeded_steps(self.trace, loop.row[1:]), own, others, 1)
         # A path that two numbers make regular has no code at the wrong place.
         is_of_two = sum(rule == REPORTS and line in own for rule, line in self.symptoms) > 1
         is_of_code = not is_of_two and len(rules) >= _RULES_OF_CODE and len(loop.turns) >= _BLOCKS_OF_CODE
@@ -240,6 +251,16 @@ class _Search:
             is_one = bool(whole) and all(found.row == best[0].row for found in best)
             return [best[0]._replace(is_named=False, edits=[], left=self.symptoms)] if is_one else []
         return [best[0]._replace(other=best[1]) if best[1:] else best[0]]
+
+    def _contradicts(self, row: int, edit: Edit) -> bool:
+        """The block of an edit differs from that of another pass, and with the edit it would have another number."""
+        blocks, numbers = self.trace.blocks, _numbers(edit.text)
+        other = self.compared.get(int(blocks.line[row]))
+        if edit.kind != "word" or other is None or len(numbers) != 1:
+            return False
+        ((letter, number),) = numbers
+        value = blocks.word(letter.strip("="))[np.argmax(blocks.line == other)]
+        return bool(abs(value - number) > ROUNDING)
 
     def _pair(self, loop: WrittenLoop, own: set[int], others: set[int]) -> list[_Explained]:
         """

@@ -12,8 +12,8 @@ from polarcheck.columns.contour.written_loop import WrittenLoop
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry.regularity.coincidences import Chances, Outlines, chances_of
 
-#: An edit must leave so much less to chance than what is written.
-_LEAST_GAIN = 2.5
+#: An edit must leave so much less to chance than what is written: 2.5, of which the sum of the parts may be a bit less.
+LEAST_GAIN = 2.499
 #: The same where all findings of the path are gone with it; an edit of less must be told apart by more than that.
 LEAST_IF_WHOLE = 0.9
 #: By how much less a second edit may explain, for both to be named [coordinates].
@@ -56,7 +56,7 @@ def correction_by(likely: Likely, row: int) -> Correction:
 
 
 def likely_edits(
-    trace: Trace, loop: WrittenLoop, most: int, least_gain: float = _LEAST_GAIN, *, is_one_of_two: bool = False
+    trace: Trace, loop: WrittenLoop, most: int, least_gain: float = LEAST_GAIN, *, is_one_of_two: bool = False
 ) -> list[Likely]:
     """
     The edits that leave least to chance, the likeliest first, each path once; none where none is clearly better.
@@ -81,7 +81,7 @@ def likely_edits(
     for number in np.argsort(-gain, kind="stable").tolist():
         if len(found) == most or gain[number] < least_gain:
             break
-        is_sure = gain[number] >= _LEAST_GAIN or least_gain < LEAST_IF_WHOLE or is_better[number]
+        is_sure = gain[number] >= LEAST_GAIN or least_gain < LEAST_IF_WHOLE or is_better[number]
         if (
             is_sure
             and witness[number] >= least
@@ -98,7 +98,7 @@ def likely_edits(
             _becomes(chances, number),
             bool(closes[number]),
             bool(smooths[number]),
-            bool(gain[number] >= _LEAST_GAIN),
+            bool(gain[number] >= LEAST_GAIN),
         )
         for number in found
     ]

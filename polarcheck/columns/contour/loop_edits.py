@@ -224,7 +224,9 @@ def _numbers(
     is_beside = any(abs(number - value) < _SAME_NUMBER for number in beside)
     why = "it is that of the block beside it" if is_beside else _IS_ANGLE if is_angle else "another number is meant"
     of_others = Slip("", why, False)
-    step = _STEPS * 10.0 ** -max(_decimals(written), _COARSEST)
+    # A number without decimals is as fine as the others.
+    decimals = _decimals(written) or max((_decimals(plain_number(size)) for size in others), default=0)
+    step = _STEPS * 10.0 ** -max(decimals, _COARSEST)
     of_pen = list(slips_of(written))
     exact = {_key(slip.text) for slip in of_pen}
     # A number that one slip writes exactly is none that another one writes but for rounding, and nobody rounds to 0.

@@ -11,7 +11,7 @@ import numpy as np
 from polarcheck.columns.contour.plane_loops import PlaneLoop, loops_of, smooth_share
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Columns, Mask, Rows, cached_property
-from polarcheck.foundation.states import Side
+from polarcheck.foundation.states import Motion, Side
 from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.regularity.symmetry import Symmetry
 from polarcheck.geometry.tolerances import ROUNDING
@@ -25,8 +25,8 @@ if TYPE_CHECKING:
 _PLAIN_ORDER, _FEWEST_CORNERS = 2, 5
 #: Share of the ends of arcs that may be tangent by chance.
 _SMOOTH_BY_CHANCE = 0.25
-#: Places at which a tool goes down.
-_FEWEST_PLACES = 4
+#: Places at which a tool goes down, and lines that a curve is written as.
+_FEWEST_PLACES, _FEWEST_OF_CURVE = 4, 12
 
 
 class XReading(msgspec.Struct, frozen=True):
@@ -118,10 +118,20 @@ class Regularity(Columns, frozen=True):
 
         return misplaced(trace, rows)
 
+    @property
+    def _off_curve(self) -> Iterable[Correction]:
+        """What leads back to the curve of the points beside it."""
+        path, motion = self.trace.path, self.trace.axes.motion
+        if np.count_nonzero((motion == Motion.LINE) & path.travels & path.on_plane) < _FEWEST_OF_CURVE:
+            return ()
+        from polarcheck.columns.contour.curve_points import off_the_curve  # most contours have a few blocks
+
+        return off_the_curve(self.trace)
+
     @cached_property
     def corrections(self) -> dict[int, Correction]:
         """By row what makes a contour symmetric."""
-        by_row = {correction.row: correction for correction in self._misplaced}
+        by_row = {correction.row: correction for correction in (*self._off_curve, *self._misplaced)}
         for _, found in self._corrected:
             for correction in found.symmetric:
                 by_row.setdefault(correction.row, correction)

@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from polarcheck.foundation.arrays import Floats, Mask, Points, Rows
+from polarcheck.geometry.plane import cross
 
 #: What is tangent [rad].
 _TANGENT = np.radians(1.2)
@@ -117,13 +118,19 @@ def chances_of(outlines: Outlines, tolerance: float) -> Chances:
 
 
 def _overlaps(point: Points, turns: Rows, tolerance: float) -> Mask:
-    """The first or the last line of the outline has an end of the other one on it."""
+    """The first or the last line of the outline has an end of the other one on it, or they cross."""
     overlaps = np.zeros(len(point), bool)
     for place, begin, end, turn in ((-1, 0, 1, 0), (-2, 0, 1, 0), (0, -2, -1, -1), (1, -2, -1, -1)):
         way = np.abs(point[:, place] - point[:, begin]) + np.abs(point[:, end] - point[:, place])
         is_on = way - np.abs(point[:, end] - point[:, begin]) <= tolerance
         overlaps |= is_on & (turns[:, turn] == 0) & (point.shape[1] > _FEWEST + (place in (-2, 1)))
-    return overlaps
+    first, last = point[:, :2].T, point[:, -2:].T
+    are_aside = [
+        cross(way, one[0] - begin) * cross(way, one[1] - begin) < 0
+        for begin, way, one in ((first[0], first[1] - first[0], last), (last[0], last[1] - last[0], first))
+    ]
+    crosses = are_aside[0] & are_aside[1] & (turns[:, 0] == 0) & (turns[:, -1] == 0)
+    return np.asarray(overlaps | crosses)
 
 
 def _sweeps(outlines: Outlines, length: Floats, moves: Mask, tolerance: float) -> tuple[Floats, Mask, Floats]:
