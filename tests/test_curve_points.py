@@ -95,3 +95,9 @@ def test_a_word_of_the_block_before_is_told() -> None:
     blocks = blocks_of(ellipse())
     x, c = (blocks[number].split()[index] for number, index in ((8, 0), (9, 1)))
     assert [block for block, _ in said_of([*blocks[:9], f"{x} {c}", *blocks[10:]])] == [9]
+
+
+def test_points_off_a_curve_in_many_places_are_teeth() -> None:
+    row = [f"X{50 if number % 12 == 6 else 40}. C{number / 2 - 15:.1f}" for number in range(60)]
+    assert not said_of(row)
+    assert [block for block, _ in said_of([*row[:10], *(f"X40. {block.split()[1]}" for block in row[10:])])] == [6]

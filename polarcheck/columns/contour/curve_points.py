@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -24,6 +23,8 @@ _FOURTH = np.array([1.0, -4.0, 6.0, -4.0, 1.0])
 #: Fourth differences that are as smooth as the rest, in those of the rest and in halves of the last digit; how much
 #: rougher a wrong point is. Of a corner in an even row of points a sixth is left, whatever its point is moved to.
 _AS_SMOOTH, _DIGITS, _ROUGHER = 2.0, 16.0, 8.0
+#: Points off the curves of a program, of which more are teeth or marks; rough points that are searched.
+_MOST, _MOST_SEARCHED = 2, 200
 
 
 class _Curves(NamedTuple):
@@ -37,27 +38,29 @@ class _Curves(NamedTuple):
     row: Rows
 
 
-def off_the_curve(trace: Trace) -> Iterator[Correction]:
+def off_the_curve(trace: Trace) -> list[Correction]:
     """The corrections of single words that lead to a point off the curve."""
     curves = _curves(trace)
     if not len(curves.row):
-        return
+        return []
     half = np.abs(half_of_last_digit(trace))
     is_own = curves.row >= 0
     digit = _DIGITS * np.where(is_own, half[curves.row], 0.0)
     rough = np.zeros(len(curves.point), np.complex128)
     rough[2:-2] = np.convolve(curves.point, _FOURTH, "valid")
     size = np.abs(rough)
-    for index in np.flatnonzero(is_own & (size > _ROUGHER * np.maximum(digit, _AS_SMOOTH * _beside(size)))).tolist():
+    odd = np.flatnonzero(is_own & (size > _ROUGHER * np.maximum(digit, _AS_SMOOTH * _beside(size))))
+    found: list[Correction] = []
+    for index in odd[:_MOST_SEARCHED].tolist():
         around = np.append(size[index - _REACH : index - 2], size[index + 3 : index + _REACH + 1])
         around = around[~np.isnan(around)]
         if len(around) < _WITNESSES:
             continue
         smooth = max(float(digit[index]), _AS_SMOOTH * float(np.sort(around)[len(around) // 2]))
         if size[index] > _ROUGHER * smooth:
-            found = _correction(trace, curves, index, rough[index - 2 : index + 3], smooth)
-            if found is not None:
-                yield found
+            correction = _correction(trace, curves, index, rough[index - 2 : index + 3], smooth)
+            found += [] if correction is None else [correction]
+    return found if len(found) <= _MOST else []
 
 
 def _beside(size: Floats) -> Floats:
