@@ -94,6 +94,20 @@ class MisplacedRamps(Columns, frozen=True):
         candidates = np.flatnonzero(rows)[:_MOST]
         return trace.blocks.mask_of([row for row in candidates.tolist() if self._has_witness(row, int(since[row]))])
 
+    def lead_of(self, row: int) -> int:
+        """
+        The row of the move that leads to the contour before a G40 without its start-up.
+
+        It ends where the contour is left, or is the first one behind the last move of Z down.
+        """
+        trace, moves = self.trace, self._moves
+        begins = trace.mode.enters | trace.compensation.cancels | (trace.path.moves_z & ~trace.path.travels)
+        since = int(last_row(begins, trace.blocks.starts)[row])
+        first, last = np.searchsorted(moves.row, (since, row), side="right").tolist()
+        # The last move of the contour, before that of G40, ends there in any case.
+        ends = np.abs(moves.end[first : max(last - 2, first + 1)] - trace.path.start[row]) <= _SAME
+        return int(moves.row[first + int(np.argmax(ends))])
+
     def _has_witness(self, row: int, since: int) -> bool:
         trace, moves = self.trace, self._moves
         first, last = np.searchsorted(moves.row, (since, row), side="right").tolist()

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 @rule(
     WARNING,
     "{code} takes back a compensation that nothing has begun: the contour before it is cut with the cutter center on "
-    "the programmed path, {wrong_by}; write {left_or_right} into the block that leads to the contour",
+    "the programmed path, {wrong_by}; write {left_or_right} into the block that leads to the contour, {lead}",
     values=("code", "radius"),
     worse=("radius",),
     gouges=True,
@@ -95,7 +95,7 @@ def cancel_without_start_up(misplaced_ramps: MisplacedRamps) -> Mask:
     return misplaced_ramps.cancel_alone
 
 
-def details(hit: Hit, offsets: ToolOffsets, machine: Machine) -> Details:
+def details(hit: Hit, offsets: ToolOffsets, misplaced_ramps: MisplacedRamps, machine: Machine) -> Details:
     from polarcheck.rules.wording.ramps import wrong_by
     from polarcheck.rules.wording.written import code_of
 
@@ -103,5 +103,6 @@ def details(hit: Hit, offsets: ToolOffsets, machine: Machine) -> Details:
         "code": hit.cancel,
         "radius": abs(offsets.radius_of_offset[hit.row]),
         "wrong_by": wrong_by(hit),
+        "lead": f"in or before line {hit.line(misplaced_ramps.lead_of(hit.row))}",
         "left_or_right": f"{code_of(machine, 'compensation_left')} or {code_of(machine, 'compensation_right')}",
     }
