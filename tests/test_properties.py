@@ -16,6 +16,7 @@ from msgspec.structs import replace
 from programs import machine_of, moves_of, report_of, tables_of, trace_of
 
 from polarcheck.columns.path.moves import Moves, programmed_moves
+from polarcheck.rules.rule import load_all
 
 pytestmark = pytest.mark.ci
 
@@ -282,7 +283,9 @@ def test_splitting_a_move_changes_no_finding(moves: list[Move]) -> None:
         here = move.end
     # At the center a piece may lie just beside it where the whole lay on it.
     assume(tables_of(program(moves), FANUC)["tool_center"].nearest.min() > 0.02)
-    ours, theirs = report_of(program(moves), FANUC), report_of(program(split), FANUC)
+    # What is likely to be meant may be another word where a point more is written.
+    rules = [rule for name, rule in load_all().items() if name != "nearly-regular-contour"]
+    ours, theirs = (report_of(program(path), FANUC, only=rules) for path in (moves, split))
     assert {(f.rule, f.severity) for f in ours.findings} == {(f.rule, f.severity) for f in theirs.findings}
 
 
