@@ -199,7 +199,6 @@ class _Work:
                 data,
                 task.settings,
                 path,
-                task.settings.encoding,
                 self.wanted.unsafe_fixes,
                 self.suppress or (lambda report: report),
             )

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import NamedTuple
 
 import numpy as np
 
@@ -14,91 +13,71 @@ from polarcheck.rewrite.compare.terms import Terms
 from polarcheck.rules.quantity import rounded
 from polarcheck.rules.wording.offsets import called_tool
 
-_UNITS = {"radius": "mm", "c_angle": "deg", "speed": "rev/min"}
-_NAMES = {
-    "tool": "the tool",
-    "radius": "R",
-    "c_angle": "C at the beginning of the section",
-    "spindle": "the main spindle",
-    "live_tool": "the live tool",
-    "speed": "S",
-    "plane": "the plane",
+#: What is compared, as a sentence names it, and the unit of its value; a state without one is a text.
+_STATES = {
+    "tool": ("the tool", ""),
+    "radius": ("R", "mm"),
+    "c_angle": ("C at the beginning of the section", "deg"),
+    "spindle": ("the main spindle", ""),
+    "live_tool": ("the live tool", ""),
+    "speed": ("S", "rev/min"),
+    "plane": ("the plane", ""),
 }
 
 
-class Entry(NamedTuple):
-    """
-    The state at the start of a section; NaN or empty if it is not known.
-
-    tool: tool and offset as the program calls them.
-    radius: R of the compensation, or the one in force [mm].
-    c_angle: from 0 to 360 [deg].
-    speed: S as written.
-    plane: code of the plane, as G17.
-    """
-
-    tool: str
-    radius: float
-    c_angle: float
-    spindle: str
-    live_tool: str
-    speed: float
-    plane: str
+def _numbers(section: Stretch) -> dict[str, float]:
+    """Return R of the compensation or in force [mm], C from 0 to 360 [deg], and S as written; NaN is not known."""
+    trace, number = section.trace, section.section
+    return {
+        "radius": abs(float(trace.compensation.radius[_row_of_tool(section)])),
+        "c_angle": float(trace.path.section_entry[number]) % 360 if trace.path.knows_section_entry[number] else np.nan,
+        "speed": float(speed_in_force(trace)[section.enter]),
+    }
 
 
-def entry_of(of_section: Stretch) -> Entry:
-    """Return the state of a section."""
-    trace, section, enter = of_section.trace, of_section.section, of_section.enter
-    compensated = np.flatnonzero((trace.mode.section == section) & trace.compensation.compensates)
-    row = int(compensated[0]) if len(compensated) else enter
-    angle = float(trace.path.section_entry[section]) % 360 if trace.path.knows_section_entry[section] else np.nan
+def _texts(section: Stretch) -> dict[str, str]:
+    """Return tool and offset as the program calls them, which spindles run, the code of the plane; empty for none."""
+    trace, enter, row = section.trace, section.enter, _row_of_tool(section)
     plane = int(trace.modal.state("plane")[enter])
-    return Entry(
-        tool=called_tool(trace.tools, row) if trace.tools.has_called_tool[row] else "",
-        radius=abs(float(trace.compensation.radius[row])),
-        c_angle=angle,
-        spindle=_runs(bool(trace.modal.spindle[enter])),
-        live_tool=_runs(bool(trace.modal.live_tool[enter])),
-        speed=float(speed_in_force(trace)[enter]),
-        plane=f"G{plane}" if plane else "",
-    )
+    return {
+        "tool": called_tool(trace.tools, row) if trace.tools.has_called_tool[row] else "",
+        "spindle": "runs" if trace.modal.spindle[enter] else "stands",
+        "live_tool": "runs" if trace.modal.live_tool[enter] else "stands",
+        "plane": f"G{plane}" if plane else "",
+    }
 
 
-def _runs(on: bool) -> str:
-    return "runs" if on else "stands"
+def _row_of_tool(section: Stretch) -> int:
+    trace = section.trace
+    compensated = np.flatnonzero((trace.mode.section == section.section) & trace.compensation.compensates)
+    return int(compensated[0]) if len(compensated) else section.enter
 
 
 def entry_differences(old: Stretch, new: Stretch, *, is_same_machine: bool, terms: Terms) -> Iterator[Difference]:
     """Yield what differs at the start of two sections; across machines only states that mean the same on both."""
-    before, after = (entry_of(part) for part in (old, new))
     lines = [part.line(part.enter) for part in (old, new)]
-    machine_specific = {"tool", "plane", *_of_one_machine(old, new)}
-    for what in Entry._fields:
-        if not is_same_machine and what in machine_specific:
+    left_out = set() if is_same_machine else {"tool", "plane", *_of_one_machine(old, new)}
+    (numbers, texts), (new_numbers, new_texts) = ((_numbers(part), _texts(part)) for part in (old, new))
+    least = {"c_angle": terms.angle, "radius": terms.tolerance}
+    for what, (name, unit) in _STATES.items():
+        if what in left_out:
             continue
-        value, new_value = getattr(before, what), getattr(after, what)
-        if isinstance(value, str):
+        if what in texts:
+            value, new_value = texts[what], new_texts[what]
             if value != new_value:
-                text = f"{_NAMES[what]}: {value or 'none'} has become {new_value or 'none'}"
+                text = f"{name}: {value or 'none'} has become {new_value or 'none'}"
                 yield Difference(what, text, value or None, new_value or None, "", *lines)
             continue
-        apart = abs(value - new_value)
+        number, new_number = numbers[what], new_numbers[what]
+        apart = abs(number - new_number)
         if what == "c_angle":
             apart = min(apart, 360 - apart)
-        least = {"c_angle": terms.angle, "radius": terms.tolerance}.get(what, 0.0)
-        if (np.isnan(value) and np.isnan(new_value)) or apart <= least:
-            continue
-        if what in ("radius", "c_angle") and np.isnan(apart):
-            continue  # one of them is not known: that is no difference, and the section says so
-        texts = [_value_text(part, what, number) for part, number in ((old, value), (new, new_value))]
-        yield Difference(
-            what,
-            f"{_NAMES[what]} was {texts[0]} and is {texts[1]}",
-            rounded(value),
-            rounded(new_value),
-            _UNITS[what],
-            *lines,
-        )
+        # Where R or C is not known in one of them, that is no difference, and the section says so.
+        is_open = np.isnan(apart) and (what in least or np.isnan(number) == np.isnan(new_number))
+        if not (is_open or apart <= least.get(what, 0.0)):
+            was, is_now = (_value_text(part, what, of_part) for part, of_part in ((old, number), (new, new_number)))
+            text = f"{name} was {was} and is {is_now}"
+            yield Difference(what, text, rounded(number), rounded(new_number), unit, *lines)
 
 
 def _of_one_machine(old: Stretch, new: Stretch) -> Iterator[str]:

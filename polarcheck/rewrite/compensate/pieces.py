@@ -135,8 +135,6 @@ def _of_circles(center: complex, radius: float, other_center: complex, other_rad
     apart = abs(vector)
     if apart <= ZERO:
         return []
-    toward = (apart**2 + radius**2 - other_radius**2) / (2 * apart)
-    square = radius**2 - toward**2
-    aside = 1j * vector / apart * math.sqrt(max(square, 0.0))
-    foot = center + vector / apart * toward
-    return [foot - aside, foot + aside] if square >= 0 else []
+    # Both lie on a line across that between the centers.
+    foot = center + vector / apart * (apart**2 + radius**2 - other_radius**2) / (2 * apart)
+    return _of_line(Piece(foot, foot + 1j * vector), center, radius)

@@ -47,7 +47,7 @@ class State(msgspec.Struct, frozen=True):
     selected: FileReport
 
 
-def state_of(data: bytes, settings: Settings, path: str, encoding: str | None) -> State:
+def state_of(data: bytes, settings: Settings, path: str) -> State:
     """
     Read and check a program.
 
@@ -55,7 +55,7 @@ def state_of(data: bytes, settings: Settings, path: str, encoding: str | None) -
     """
     all_rules = list(load_all().values())
     with time_limit(seconds_for(len(data), settings.job.run.max_seconds)):
-        runs = read(data, settings.machine, settings.job, path, encoding)
+        runs = read(data, settings.machine, settings.job, path, settings.encoding)
         report = check_runs(runs, all_rules, settings.severities, settings.inline)
         is_chosen = len(settings.rules) < len(all_rules)
         selected = check_runs(runs, settings.rules, settings.severities, settings.inline) if is_chosen else report
@@ -64,7 +64,7 @@ def state_of(data: bytes, settings: Settings, path: str, encoding: str | None) -
 
             selected = with_outline(selected, runs)
     # Each channel has its own view of the text; the edits are made in the file.
-    return State(source.read_source(data, path, encoding), runs, report, selected)
+    return State(source.read_source(data, path, settings.encoding), runs, report, selected)
 
 
 def objection(

@@ -103,7 +103,6 @@ def with_fixes(
     data: bytes,
     settings: Settings,
     path: str,
-    encoding: str | None = None,
     unsafe: bool = False,
     suppress: Suppress = lambda report: report,
 ) -> Outcome:
@@ -118,31 +117,20 @@ def with_fixes(
     Raises what state_of raises for the original program.
     """
     with time_limit(seconds_for(len(data), settings.job.run.max_seconds)):
-        return _fixed(data, settings, path, encoding, unsafe, suppress)
-
-
-def _fixed(
-    data: bytes, settings: Settings, path: str, encoding: str | None, unsafe: bool, suppress: Suppress
-) -> Outcome:
-    state = state_of(data, settings, path, encoding)
-    work = _Work(settings, path, encoding, unsafe, suppress, len(state.source.line_starts))
-    while not work.is_over:
-        candidates = work.candidates(state)
-        if not candidates:
-            break
-        state = work.best(state, candidates) or state
-    remaining = sum(
-        finding.fix is not None and not finding.fix.safe and not unsafe for finding in suppress(state.selected).findings
-    )
-    return Outcome(
-        state.source.data,
-        work.fixed,
-        sorted(work.assumed, key=lambda written: written.new_line),
-        list(work.refused.values()),
-        remaining,
-        work.origin.tolist(),
-        not work.is_over,
-    )
+        state = state_of(data, settings, path)
+        work = _Work(settings, path, unsafe, suppress, len(state.source.line_starts))
+        while not work.is_over and (candidates := work.candidates(state)):
+            state = work.best(state, candidates) or state
+        fixes = [finding.fix for finding in suppress(state.selected).findings if finding.fix is not None]
+        return Outcome(
+            state.source.data,
+            work.fixed,
+            sorted(work.assumed, key=lambda written: written.new_line),
+            list(work.refused.values()),
+            0 if unsafe else sum(not fix.safe for fix in fixes),
+            work.origin.tolist(),
+            not work.is_over,
+        )
 
 
 class _Work:
@@ -157,17 +145,8 @@ class _Work:
     origin: for each line of the present program its line in the original file (from 1).
     """
 
-    def __init__(
-        self,
-        settings: Settings,
-        path: str,
-        encoding: str | None,
-        unsafe: bool,
-        suppress: Suppress,
-        lines: int,
-    ) -> None:
-        self.settings, self.path, self.encoding = settings, path, encoding
-        self.unsafe, self.suppress = unsafe, suppress
+    def __init__(self, settings: Settings, path: str, unsafe: bool, suppress: Suppress, lines: int) -> None:
+        self.settings, self.path, self.unsafe, self.suppress = settings, path, unsafe, suppress
         self.fixed: list[Fixed] = []
         self.assumed: list[Written] = []
         self.refused: dict[_Key, Refused] = {}
@@ -254,7 +233,7 @@ class _Work:
             return None, f"its encoding, {state.source.encoding}, does not give all characters back as they are"
         self.checks += 1
         try:
-            after = state_of(data, self.settings, self.path, self.encoding)
+            after = state_of(data, self.settings, self.path)
             rules = {candidate.finding.rule for candidate in candidates}
             origin = origins(state.source, after.source, edits).tolist()
             reason = objection(state, after, rules, [_change(candidate) for candidate in candidates], origin)
