@@ -8,7 +8,7 @@ import numpy as np
 
 from polarcheck.columns.feed.dwells import time_of_dwells
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import stretch
+from polarcheck.foundation.arrays import Mask, stretch
 from polarcheck.foundation.states import Units
 from polarcheck.program.machines.m_codes import SWITCHED
 from polarcheck.rewrite.compare.orders import Step
@@ -73,18 +73,21 @@ def meaning_steps(trace: Trace) -> list[Step]:
     return result
 
 
-def speed_steps(trace: Trace) -> list[Step]:
-    """Return the spindle speeds of a program in order, whichever words name them: S, SB=, or P beside M133."""
+def is_speed(trace: Trace) -> Mask:
+    """Return a mask of the executed words that name a spindle speed, whichever they are: S, SB=, or P beside M133."""
     machine, words = trace.machine, trace.run.words
     addresses = [machine.address_number(word) for word in ("S", *machine.control.spindle_words)]
-    is_speed = np.isin(words.address, addresses)
-    if machine.writing.live_tool_speed == "P":
-        starts = trace.blocks.codes(*machine.m_codes.live_tool_on)
-        is_speed |= (words.address == ord("P")) & starts[trace.run.row]
-    row = trace.run.row[is_speed]
+    starts = trace.blocks.codes(*machine.m_codes.live_tool_on) & (machine.writing.live_tool_speed == "P")
+    return np.asarray(np.isin(words.address, addresses) | ((words.address == ord("P")) & starts[trace.run.row]))
+
+
+def speed_steps(trace: Trace) -> list[Step]:
+    """Return the spindle speeds of a program in order."""
+    words, names = trace.run.words, is_speed(trace)
+    row = trace.run.row[names]
     in_ft = (trace.modal.state("speed")[row] != 0) & ~trace.blocks.listed("coordinate_setting")[row]
     in_ft &= trace.lengths.units[row] == Units.INCH
-    speeds = (words.value[is_speed] * np.where(in_ft, 0.3048, 1.0)).tolist()
+    speeds = (words.value[names] * np.where(in_ft, 0.3048, 1.0)).tolist()
     lines = trace.blocks.line_in_file[row].tolist()
     return [
         Step(index, line, ("speed",), (speed,), f"the spindle speed {speed:g}")

@@ -19,7 +19,7 @@ from polarcheck.rewrite.compensate.contours import SIDES, contours_of
 from polarcheck.rewrite.compensate.parallel import NoContourError
 from polarcheck.rewrite.compensate.pieces import Piece
 from polarcheck.rewrite.compensate.ramp_moves import Contour, with_ramps
-from polarcheck.rewrite.compensate.same_part import CompensatedContour, Proof, require_same_part
+from polarcheck.rewrite.compensate.same_part import CompensatedContour, require_same_part
 from polarcheck.rewrite.compensate.section_moves import Move
 from polarcheck.rewrite.compensate.sides import Swept
 from polarcheck.rewrite.writing.new_blocks import NewBlock, decision_comment, edit_before, edits_of, with_edits
@@ -67,8 +67,7 @@ def compensated(original: Original, options: Compensating = Compensating()) -> O
     figures = [
         Figure("sections with G41 or G42 and the contour", len(sections)),
         Figure("contours", len(contours)),
-        Figure("largest difference of the part", proof.part, "mm"),
-        Figure("largest distance of the tool center from its path", proof.path, "mm"),
+        *proof,
     ]
     lines = trace.blocks.line_in_file
     decisions = [Decision(int(lines[row]), text) for row, text in _remaining(trace, sections, contours)]
@@ -81,7 +80,7 @@ def _written(
     sections: Sequence[Section],
     chosen: Sequence[Sequence[tuple[Candidate, Contour]]],
     by_moves: bool,
-) -> tuple[bytes, list[int], list[CompensatedContour], Proof]:
+) -> tuple[bytes, list[int], list[CompensatedContour], list[Figure]]:
     """Return the new program, read back. by_moves: moves to and from a contour become its ramps."""
     trace, machine = original.trace, original.settings.machine
     contours = [ramped for pair in zip(sections, chosen, strict=True) for ramped in _ramped(trace, *pair, by_moves)]

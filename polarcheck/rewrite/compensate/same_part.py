@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import msgspec
 import numpy as np
@@ -16,7 +15,7 @@ from polarcheck.rewrite.compensate.pieces import Piece
 from polarcheck.rewrite.compensate.ramp_moves import Contour, Ramped
 from polarcheck.rewrite.compensate.sides import Swept
 from polarcheck.rewrite.writing.original import Original
-from polarcheck.rewrite.writing.outcome import Refusal, RefusedError, refused_at
+from polarcheck.rewrite.writing.outcome import Figure, Refusal, RefusedError, refused_at
 from polarcheck.rewrite.writing.reading_back import read_back_on_part, require_equal
 
 #: The number of points compared along each contour, and the points near corners, as shares of a piece.
@@ -43,21 +42,9 @@ class CompensatedContour(msgspec.Struct, frozen=True):
     ramped: Ramped
 
 
-class Proof(NamedTuple):
-    """
-    The differences that were measured.
-
-    part: the largest difference of the walls [mm].
-    path: the largest distance of the tool center from its path [mm].
-    """
-
-    part: float
-    path: float
-
-
 def require_same_part(
     original: Original, swept: Swept, data: bytes, origin: Sequence[int], contours: Sequence[CompensatedContour]
-) -> Proof:
+) -> list[Figure]:
     """
     Return the differences of the part and of the tool center path between the programs with and without G41 and G42.
 
@@ -96,7 +83,10 @@ def require_same_part(
             line = origin[int(result.new.trace.blocks.line_in_file[row]) - 1]
             text = f"the tool center would leave its path by {apart:.4f} mm, which no corner explains"
             raise RefusedError([Refusal(line, text)])
-    return Proof(largest, path)
+    return [
+        Figure("largest difference of the part", largest, "mm"),
+        Figure("largest distance of the tool center from its path", path, "mm"),
+    ]
 
 
 def _text(was: Floats, becomes: Floats, worst: int) -> str:

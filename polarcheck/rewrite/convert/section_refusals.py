@@ -68,7 +68,6 @@ def refusals(original: Original, is_same: bool) -> list[Refusal]:
     if not is_same:
         reasons += _of_numbers(trace)
         reasons += _of_rows(trace)
-        reasons += _of_words(trace)
     return sorted(dict.fromkeys(reasons), key=lambda reason: reason.line)
 
 
@@ -112,13 +111,8 @@ def _of_rows(trace: Trace) -> Iterator[Refusal]:
         (unknown, "where the tool goes is not known"),
         (off_circle, "this arc does not end on its circle"),
         (path.is_arc & moving & np.isnan(path.center), "the center of this arc is not known"),
+        (mode.enters & (path.frames is not None), "the program shifts or turns its coordinates by frames"),
         ((feed_mode == FeedMode.INVERSE_TIME) & moving, "inverse time in the mode is not converted"),
     ]
     for hits, text in checks:
         yield from (refusal_at(trace, row, text) for row in np.flatnonzero(mode.first_in_section(hits)).tolist())
-
-
-def _of_words(trace: Trace) -> Iterator[Refusal]:
-    rows = np.flatnonzero(trace.mode.whole_section >= 0)
-    if len(rows) and trace.path.frames is not None:
-        yield refusal_at(trace, int(rows[0]), "the program shifts or turns its coordinates by frames")

@@ -10,6 +10,7 @@ import numpy as np
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Mask, Rows, stretch
 from polarcheck.program.machines.machine import Machine
+from polarcheck.rewrite.compare.order_meanings import is_speed
 from polarcheck.rewrite.convert.measures import Measures
 from polarcheck.rewrite.convert.number_text import number_of
 from polarcheck.rewrite.convert.spindle_roles import SpindleRoles
@@ -30,12 +31,7 @@ class SpeedWords:
     @cached_property
     def is_speed(self) -> Mask:
         """Per executed word: it names a spindle speed."""
-        words, run = self.trace.run.words, self.trace.run
-        is_speed = np.isin(words.address, [ord("S"), *self._named])
-        if self.source.writing.live_tool_speed == "P":
-            starts = self.trace.blocks.codes(*self.source.m_codes.live_tool_on)
-            is_speed |= (words.address == ord("P")) & starts[run.row]
-        return np.asarray(is_speed)
+        return is_speed(self.trace)
 
     def is_surface_speed(self, row: int) -> bool:
         """S of a row is a cutting speed [m/min or ft/min], by G96, and not the limit beside G50."""

@@ -24,7 +24,7 @@ from polarcheck.rewrite.roll.rolled_feeds import Feeds
 from polarcheck.rewrite.roll.slowing import Parts
 from polarcheck.rewrite.roll.ways import AxisMoves
 from polarcheck.rewrite.writing.original import Original
-from polarcheck.rewrite.writing.outcome import Refusal
+from polarcheck.rewrite.writing.outcome import Figure, Measured, Refusal
 
 #: Places on a block at which it is measured.
 _PLACES = np.linspace(0.125, 1, 8)[None, :]
@@ -46,22 +46,6 @@ class Section(msgspec.Struct, frozen=True):
     entry: Entry | None
     text: Writer
     first_line: int
-
-
-class Measured(msgspec.Struct, frozen=True):
-    """
-    What was read back.
-
-    differences: the reasons why the new program must not be written.
-    places: the largest distance of the ends of blocks from the new path [mm].
-    way: the largest distance of the paths between these ends, which bow, from the new path [mm].
-    time: time of the new blocks at feed [s].
-    """
-
-    differences: list[Refusal]
-    places: float
-    way: float
-    time: float
 
 
 def measured_of(
@@ -108,7 +92,14 @@ def measured_of(
             for element, feed in zip(section.parts.elements, section.parts.feeds, strict=True)
             if element.kind == Motion.NONE
         )
-    return Measured(differences, places, away_of_path, time)
+    was = 60 * sum(float(section.way.time.sum()) for section in sections)
+    figures = [
+        Figure("largest distance of the ends of the blocks from the new path", places, "mm"),
+        Figure("largest distance between the old and the new path within a block", away_of_path, "mm"),
+        Figure("time at feed before", was, "s"),
+        Figure("time at feed after", time, "s"),
+    ]
+    return Measured(differences, figures)
 
 
 def _feeds(section: Section, moves: Moves, of_line: Rows, trace: Trace) -> list[Refusal]:

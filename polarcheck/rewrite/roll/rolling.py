@@ -13,14 +13,14 @@ from polarcheck.rewrite.roll.entries import entry_of
 from polarcheck.rewrite.roll.following import Following
 from polarcheck.rewrite.roll.rollable import LEAST, Stretch, stretches
 from polarcheck.rewrite.roll.rolled_blocks import Writer
-from polarcheck.rewrite.roll.rolled_deviation import Measured, Section, measured_of
+from polarcheck.rewrite.roll.rolled_deviation import Section, measured_of
 from polarcheck.rewrite.roll.rolled_elements import Fit, fit_of
 from polarcheck.rewrite.roll.rolled_feeds import feeds_of
 from polarcheck.rewrite.roll.slowing import parts_of
 from polarcheck.rewrite.roll.ways import AxisMoves, axis_moves, per_minute_rule, through_center
 from polarcheck.rewrite.writing.new_blocks import edit_behind, edits_of, with_edits
 from polarcheck.rewrite.writing.original import Original
-from polarcheck.rewrite.writing.outcome import Figure, Outcome, Refusal, RefusedError, refused_at
+from polarcheck.rewrite.writing.outcome import Figure, Measured, Outcome, Refusal, RefusedError, refused_at
 from polarcheck.rewrite.writing.reading_back import ReadBack, read_back_on_part
 from polarcheck.rewrite.writing.rotary_feed import notes_on_feed
 from polarcheck.rewrite.writing.style import Style
@@ -190,10 +190,7 @@ def _figures(sections: Sequence[Section], measured: Measured) -> list[Figure]:
         Figure("sections", len(sections)),
         Figure("blocks before", sum(len(section.way) for section in sections)),
         Figure("blocks after", sum(section.text.count for section in sections)),
-        Figure("largest distance of the ends of the blocks from the new path", measured.places, "mm"),
-        Figure("largest distance between the old and the new path within a block", measured.way, "mm"),
-        Figure("time at feed before", 60 * sum(float(section.way.time.sum()) for section in sections), "s"),
-        Figure("time at feed after", measured.time, "s"),
+        *measured.figures,
     ]
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-import msgspec
 import numpy as np
 
 from polarcheck.columns.path.moves import Moves
@@ -19,7 +18,7 @@ from polarcheck.rewrite.unroll.axis_blocks import Steps, x_factor
 from polarcheck.rewrite.unroll.unrolled_feeds import method_of
 from polarcheck.rewrite.writing.order_refusals import changed_moves, changed_orders
 from polarcheck.rewrite.writing.original import Original
-from polarcheck.rewrite.writing.outcome import Figure, Refusal
+from polarcheck.rewrite.writing.outcome import Figure, Measured, Refusal
 from polarcheck.rewrite.writing.part_paths import path_on_part
 from polarcheck.rewrite.writing.rotary_feed import block_times
 
@@ -32,18 +31,6 @@ _TOGETHER = 20_000
 _AT_ORDERS = 0.1
 
 
-class Measured(msgspec.Struct, frozen=True):
-    """
-    What the new program does.
-
-    differences: from the original. figures: for the user, in order. notes: warnings.
-    """
-
-    differences: list[Refusal]
-    figures: list[Figure]
-    notes: list[str] = []
-
-
 def measured(
     original: Original, new: Original, spans: Sequence[tuple[int, int]], steps: Steps, chord_error: float, feed: str
 ) -> Measured:
@@ -54,12 +41,12 @@ def measured(
     """
     old, after = original.trace, new.trace
     if len(after.mode.sections):
-        return Measured([Refusal(0, "the result still has a polar section")], [])
+        return Measured([Refusal(0, "the result still has a polar section")])
     within = _within(after, spans)
     rotary = after.machine.polar.rotary_address
     rows = np.flatnonzero(within & after.blocks.has("X", rotary) & after.modal.uses_axes)
     if len(rows) != len(steps):
-        return Measured([Refusal(0, f"the result has {len(rows)} blocks of X and C, not {len(steps)}")], [])
+        return Measured([Refusal(0, f"the result has {len(rows)} blocks of X and C, not {len(steps)}")])
     paths = [path_on_part(program.tables, chord=np.inf) for program in (original, new)]
     stays = (old.mode.whole_section < 0) | (old.path.moves_z & ~old.path.travels), ~mask_at(len(after), rows)
     differences = [*changed_moves((old, after), (paths[0], paths[1]), stays)]
@@ -69,7 +56,7 @@ def measured(
     unknown = np.flatnonzero(np.isnan(run.x_before) | np.isnan(run.turn))
     if len(unknown):
         text = "where the tool is before this move is not known: a tool is called, or an axis referenced"
-        return Measured([Refusal(_line(old, steps, int(unknown[0])), text)], [])
+        return Measured([Refusal(_line(old, steps, int(unknown[0])), text)])
     differences += _places(old, run, steps)
     distance = _distance(old, center.moves, run, steps)
     far = np.flatnonzero(~(distance <= chord_error + EXACT))

@@ -58,6 +58,18 @@ class Figure(msgspec.Struct, frozen=True):
     unit: str = ""
 
 
+class Measured(msgspec.Struct, frozen=True):
+    """
+    What was measured when a new program was read back.
+
+    differences: why it must not be written. figures: for the user, in order. notes: warnings.
+    """
+
+    differences: list[Refusal]
+    figures: list[Figure] = []
+    notes: list[str] = []
+
+
 class Outcome(msgspec.Struct, frozen=True):
     """
     A program that was rewritten, and read back.
