@@ -673,3 +673,25 @@ def test_a_frame_that_ends_at_the_switch_is_no_depth(tmp_path: Path) -> None:
         assert in_one_line(tables_of(text, control, CUTTER)) == f"hexagon, 36.000 across flats, to {depth}"
         assert compared(tmp_path, control, plain, text).exit_code == 1
         assert certified(tmp_path, control, plain, text).exit_code == 1
+
+
+@looped(
+    ("control", "old", "new"),
+    [
+        *(
+            ("fanuc-30i", "G92 X50. Z-5. F1.", "G92 X50. Z-5. F2."),
+            ("gsk-988", "G92 X50. Z-5. F1.", "G92 X50. Z-5. F2."),
+        ),
+        *(("haas-lathe", "G92 X50. Z-5. F1.", "G92 X50. Z-5. F2."), ("haas-lathe", "M19 R1.", "M19 R2.")),
+        *(("fanuc-30i", "M19 R1.", "M19 R2."), ("gsk-988", "M19 R1.", "M19 R2.")),
+        ("fanuc-30i", "G92 X50. Z-5. F1./X49./G0 Z2.", "G92 X50. Z-5. F1./X49. F2./G0 Z2."),
+    ],
+)
+def test_the_lead_of_a_thread_and_the_angle_of_a_spindle_are_orders(
+    control: str, old: str, new: str, tmp_path: Path
+) -> None:
+    sound, text = (program(control, ("/G0 X60", f"/G0 X60. Z2./{words}/G0 X60")) for words in (old, new))
+    verdict = report_of(sound, control, CUTTER).verdict
+    assert report_of(text, control, CUTTER).verdict == verdict == "pass"
+    assert compared(tmp_path, control, sound, text).exit_code == 1
+    assert certified(tmp_path, control, sound, text).exit_code == 1

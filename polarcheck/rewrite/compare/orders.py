@@ -10,7 +10,7 @@ import numpy as np
 
 from polarcheck.columns.filling import before, fill_down
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Floats, Mask, Rows
+from polarcheck.foundation.arrays import Floats, Mask, Rows, cached_property
 from polarcheck.foundation.patterns import lazy_pattern
 from polarcheck.foundation.states import MM_PER_INCH, MOVES, STATES, FeedMode, Units
 from polarcheck.program.execution.run import NO_VARIABLE, Assigned
@@ -20,8 +20,9 @@ from polarcheck.program.reading.excerpt import shortened
 from polarcheck.rewrite.writing.new_blocks import without_comments
 from polarcheck.rules.wording.written import executed_word
 
+_OF_ARCS = ("I", "J", "K", "R")
 #: Words of plain moves, and words that only name blocks.
-_OF_MOVES = ("X", "Z", "U", "W", "I", "J", "K", "R", "F", "N", "O", "/")
+_OF_MOVES = ("X", "Z", "U", "W", *_OF_ARCS, "F", "N", "O", "/")
 _FEED_MODES: dict[int, str] = {FeedMode.PER_MINUTE: " mm/min", FeedMode.PER_REVOLUTION: " mm/rev"}
 #: Words beside the code of a call: the program or block, how often, where from.
 _OF_CALLS = "PLQH"
@@ -250,7 +251,9 @@ class _Reader:
         if name == "G":
             written = executed_word(self._trace.run, index)
             return token, None, text if written[:1].upper() == "G" else written
-        return (name, self._length(name, row, value), text) if is_special or name not in self._of_moves else None
+        # Beside an order without a move R is no radius: `M19 R90.`.
+        is_order = is_special or name not in self._of_moves or (name in _OF_ARCS and not self._trace.axes.moves[row])
+        return (name, self._length(name, row, value), text) if is_order else None
 
     def _setting(self, row: int, assigned: Assigned) -> tuple[str, float, str]:
         """Return token, value and text of an assignment; as it is written where nobody knows to which variable."""
@@ -265,10 +268,18 @@ class _Reader:
         """
         Return token, value and text of the F in force in a cycle, wherever it is written [mm per min or revolution].
         """
-        feedrate = self._trace.feedrate
-        feed = float(np.nan_to_num(feedrate.feed_number[row]))
+        feedrate, lead = self._trace.feedrate, float(self._leads[row])
+        feed = lead if lead == lead else float(np.nan_to_num(feedrate.feed_number[row]))
         mode = feed_unit(int(feedrate.feed_mode[row]))
         return f"F{mode}", feed, f"F{feed:.10g}{mode}"
+
+    @cached_property
+    def _leads(self) -> Floats:
+        """The F of a thread, which is no feed for later blocks, up to the next F or the end of its cycle."""
+        blocks, in_cycle = self._trace.blocks, self._trace.modal.in_cycle
+        leads = blocks.listed("feed_is_lead") & blocks.has("F")
+        lead = np.where(leads, blocks.word("F") * self._trace.lengths.feed_scale, np.nan)
+        return fill_down(lead, blocks.has("F") | ~in_cycle | blocks.starts, np.nan)
 
     def _length(self, name: str, row: int, value: float) -> float:
         """Return the value of a word of a cycle, converted if it may be a length [mm, X as a radius]."""
