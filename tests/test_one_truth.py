@@ -695,3 +695,14 @@ def test_the_lead_of_a_thread_and_the_angle_of_a_spindle_are_orders(
     assert report_of(text, control, CUTTER).verdict == verdict == "pass"
     assert compared(tmp_path, control, sound, text).exit_code == 1
     assert certified(tmp_path, control, sound, text).exit_code == 1
+
+
+@looped("control", ["fanuc-30i", "haas-lathe", "siemens-transmit"])
+def test_block_skip_is_that_of_the_golden_trace(control: str, tmp_path: Path) -> None:
+    sound = program(control).replace("\nG0 X60", "\n/M8\n/M9\nG0 X60", 1)
+    assert compared(tmp_path, control, sound, sound).exit_code == 0
+    assert certified(tmp_path, control, sound, sound).exit_code == 0
+    for new, code in (("M8\nM9", 1), ("/M8\nM9", 1), ("/M8  (ON)\n/M9", 0)):
+        text = sound.replace("/M8\n/M9", new.replace("(ON)", "; ON") if control == "siemens-transmit" else new)
+        assert compared(tmp_path, control, sound, text).exit_code == code
+        assert certified(tmp_path, control, sound, text).exit_code == code

@@ -97,7 +97,7 @@ def orders_of(trace: Trace) -> Iterator[GoldenOrder]:
     """Yield the orders of a channel in the order in which they run, with their lines."""
     channel, z_before = trace.text.source.channel, before(trace.path.z, trace.blocks.starts, np.nan)
     of_words = [*steps(trace, is_same_machine=True), *_not_known(trace)]
-    in_order = [*of_words, *_planes_at_entry(trace), *_moves_outside(trace)]
+    in_order = [*_block_skips(trace), *of_words, *_planes_at_entry(trace), *_moves_outside(trace)]
     for step in sorted(in_order, key=lambda step: step.row):
         section = int(trace.mode.section[step.row])
         begun = int(np.searchsorted(trace.mode.sections.enter, step.row, side="right"))
@@ -124,6 +124,14 @@ def _not_known(trace: Trace) -> Iterator[Step]:
     for block, row in zip(blocks, rows_behind(trace, blocks) if blocks else (), strict=True):
         text = "".join(without_comments(trace.text, block).split()).upper()
         yield Step(row, int(trace.text.blocks.line[block]), ("not known", text), (), f"{text}: what runs is not known")
+
+
+def _block_skips(trace: Trace) -> Iterator[Step]:
+    """Yield where blocks with a / begin and end: a golden trace holds the path of one state of block skip."""
+    number = np.where(trace.blocks.has("/"), np.nan_to_num(trace.blocks.word("/"), nan=1.0), 0.0)
+    for row in np.flatnonzero(number != before(number, trace.blocks.starts, 0.0)).tolist():
+        text = f"block skip /{number[row]:g}" if number[row] else "the end of block skip"
+        yield Step(row, int(trace.blocks.line_in_file[row]), ("block skip",), (float(number[row]),), text)
 
 
 def _planes_at_entry(trace: Trace) -> Iterator[Step]:
