@@ -27,6 +27,8 @@ _PLAIN_ORDER, _FEWEST_CORNERS = 2, 5
 _SMOOTH_BY_CHANCE = 0.25
 #: Places at which a tool goes down, and lines that a curve is written as.
 _FEWEST_PLACES, _FEWEST_OF_CURVE = 4, 12
+#: Sections that may be one contour at several angles of C.
+_FEWEST_SECTIONS, _MOST_SECTIONS = 3, 36
 
 
 class XReading(msgspec.Struct, frozen=True):
@@ -128,10 +130,21 @@ class Regularity(Columns, frozen=True):
 
         return off_the_curve(self.trace)
 
+    @property
+    def _off_division(self) -> Iterable[Correction]:
+        """What makes the angles of C even at which sections cut the same."""
+        if not _FEWEST_SECTIONS <= len(self.trace.mode.sections) <= _MOST_SECTIONS:
+            return ()
+        from polarcheck.columns.contour.index_patterns import off_the_division  # most programs have a section or two
+
+        return off_the_division(self.trace)
+
     @cached_property
     def corrections(self) -> dict[int, Correction]:
         """By row what makes a contour symmetric."""
-        by_row = {correction.row: correction for correction in (*self._off_curve, *self._misplaced)}
+        by_row = {
+            correction.row: correction for correction in (*self._off_curve, *self._misplaced, *self._off_division)
+        }
         for _, found in self._corrected:
             for correction in found.symmetric:
                 by_row.setdefault(correction.row, correction)
