@@ -33,7 +33,9 @@ from polarcheck.columns.contour.likely_edits import (
     AS_LIKELY,
     LEAST_GAIN,
     LEAST_IF_WHOLE,
+    Compared,
     Likely,
+    all_compared,
     correction_by,
     likely_edits,
     likely_pairs,
@@ -47,7 +49,7 @@ from polarcheck.foundation.finding import SEVERITIES, WARNING, Finding
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.rules.editing import Replace, in_place_of, is_plain, with_word, without, words_of
 from polarcheck.rules.places import PLACES
-from polarcheck.rules.rule import Hits
+from polarcheck.rules.rule import Hits, Rule
 
 #: The rule that compares paths: either of them may be wrong.
 _COMPARES = "passes-differ"
@@ -119,7 +121,7 @@ def explained(engine: Engine, findings: list[Finding], number: int, less_regular
             hiding,
             number,
             partly,
-            lambda trial: _explained(trial, trial.findings(), number, less_regular)[0],
+            lambda trial, found: _explained(trial, found, number, less_regular)[0],
         )
     except TooHardError:
         return findings
@@ -170,7 +172,7 @@ class _Search:
         self.rows_left = MOST_ROWS
         # What is explained is mended when the next path is tried, which may be compared with it.
         self.mended: list[Replace] = []
-        self.symptoms = self._symptoms(engine)
+        self.symptoms = _symptoms(engine, self.rules)
         # By line of a block that differs from that of another pass, the line of the other one.
         self.compared: dict[int, int] = {}
 
@@ -213,7 +215,8 @@ class _Search:
         rules = {rule for rule, line in self.symptoms if line in own}
         # What makes the path symmetric is named already: only what is clear is likelier.
         least = LEAST_GAIN if rules == {REPORTS} else LEAST_IF_WHOLE
-        for likely in () if whole else likely_edits(self.trace, loop, _TRIALS, least):
+        compared = None if whole else all_compared(self.trace, loop)
+        for likely in () if compared is None else likely_edits(compared, _TRIALS, least):
             best, reach = (whole, AS_LIKELY) if whole else (partly, _LESS_LIKELY)
             if best and best[0].likely.gain - likely.gain > reach:
                 break
@@ -238,7 +241,7 @@ class _Search:
             whole = self._by_codes(ramp_edits(self.trace, loop.row[1:], rows), own, others, _RULES_OF_CODE)
         # An arc that has no center has none with two other numbers either.
         is_of_numbers = not any(rule == _NO_CENTER and line in own for rule, line in self.symptoms)
-        if not whole and is_of_numbers and (pair := self._pair(loop, own, others)):
+        if not whole and is_of_numbers and compared is not None and (pair := self._pair(compared, own, others)):
             return pair
         best = whole or partly
         if shows_more and not whole and (not partly or _exceeds(shows_more[0], partly[0])):
@@ -262,16 +265,17 @@ class _Search:
         value = blocks.word(letter.strip("="))[np.argmax(blocks.line == other)]
         return bool(abs(value - number) > ROUNDING)
 
-    def _pair(self, loop: WrittenLoop, own: set[int], others: set[int]) -> list[_Explained]:
+    def _pair(self, compared: Compared, own: set[int], others: set[int]) -> list[_Explained]:
         """
         Two edits that remove all symptoms of a path together, or the one of them that is clear and in all likely pairs.
 
         What is found with the first of them stands there because of the second. Of a few blocks a pair makes anything.
         """
+        loop = compared.loop
         if len(loop.turns) < _BLOCKS_OF_CODE:
             return []
         whole: list[tuple[float, dict[Edit, tuple[Likely, list[Replace]]]]] = []
-        for pair in likely_pairs(self.trace, loop, _PAIRS):
+        for pair in likely_pairs(self.trace, compared, _PAIRS):
             gain = sum(likely.gain for likely in pair)
             if whole and whole[0][0] - gain > AS_LIKELY:
                 break
@@ -324,13 +328,22 @@ class _Search:
         if self.rows_left < len(self.trace):
             return None
         self.rows_left -= len(self.trace)
-        left = self._left_by(edits)
-        if left is None or self.symptoms <= left:
+        trial = self._trial(edits)
+        if trial is None:
             return None
-        gone, more = self.symptoms - left, {(rule, line) for rule, line in left - self.symptoms if line not in others}
-        rules = {rule for rule, _ in gone}
-        is_judged = not likely.is_clear or rules.isdisjoint(_NO_ARC) or not rules.isdisjoint(rule for rule, _ in more)
-        if more and is_judged:
+        # The search of nearly regular contours takes longest, and most edits are refused without it.
+        fired = {rule for rule, _ in self.symptoms}
+        left = trial(rule for rule in self.rules if rule.name in fired and rule.name != REPORTS)
+        for rule in sorted(self.rules, key=lambda rule: rule.name == REPORTS):
+            if self.symptoms <= left:
+                return None
+            left |= trial([rule]) if rule.name not in fired or rule.name == REPORTS else frozenset()
+            gone = self.symptoms - left
+            more = {rule for rule, line in left - self.symptoms if line not in others}
+            rules = {rule for rule, _ in gone}
+            if more and (not likely.is_clear or rules.isdisjoint(_NO_ARC) or not rules.isdisjoint(more)):
+                return None
+        if not gone:
             return None
         return _Explained(likely, row, edits, gone, left)
 
@@ -353,25 +366,31 @@ class _Search:
 
     def _left_by(self, edits: list[Replace]) -> frozenset[_Symptom] | None:
         """The symptoms of the program with these edits; None where it cannot be read as before."""
+        trial = self._trial(edits)
+        return None if trial is None else trial(self.rules)
+
+    def _trial(self, edits: list[Replace]) -> Callable[[Iterable[Rule]], frozenset[_Symptom]] | None:
+        """What rules find in the program with these edits; None where it cannot be read as before."""
         source, engine = self.trace.text.source, self.engine
         edits = [*self.mended, *edits]
         trial = edited(engine, self.number, edits, self.rules)
         if trial is None:
             return None
         origin = origins(source, trial.trace.text.source, edits)
-        return frozenset((rule, int(origin[number - 1])) for rule, number in self._symptoms(trial))
+        return lambda rules: frozenset((rule, int(origin[number - 1])) for rule, number in _symptoms(trial, rules))
 
-    def _symptoms(self, engine: Engine) -> frozenset[_Symptom]:
-        """Where rules fire as warnings or errors."""
-        line = engine.trace.blocks.line
-        found: set[_Symptom] = set()
-        for rule in self.rules:
-            hits = engine.hits(rule)
-            if hits.mask.any():
-                severity = rule.severity if hits.severity is None else hits.severity
-                fires = hits.mask & (np.asarray(severity) >= WARNING)
-                found.update((rule.name, number) for number in set(line[fires].tolist()))
-        return frozenset(found)
+
+def _symptoms(engine: Engine, rules: Iterable[Rule]) -> frozenset[_Symptom]:
+    """Where these rules fire as warnings or errors."""
+    line = engine.trace.blocks.line
+    found: set[_Symptom] = set()
+    for rule in rules:
+        hits = engine.hits(rule)
+        if hits.mask.any():
+            severity = rule.severity if hits.severity is None else hits.severity
+            fires = hits.mask & (np.asarray(severity) >= WARNING)
+            found.update((rule.name, number) for number in set(line[fires].tolist()))
+    return frozenset(found)
 
 
 def _exceeds(one: _Explained, other: _Explained) -> bool:

@@ -8,6 +8,7 @@ found without the first mistake is no consequence of it.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 
 import msgspec
 import numpy as np
@@ -30,8 +31,8 @@ _MOST_CHECKS, MOST_ROWS = 6, 20_000
 #: Addresses that are not written for the second axis by mistake: the linear axis, codes.
 _NOT_MISTAKEN = "XUGM"
 
-#: Gives the findings of an engine.
-Check = Callable[[Engine], list[Finding]]
+#: Explains the findings of an engine.
+Explain = Callable[[Engine, list[Finding]], list[Finding]]
 #: A rule and a line at which it fires.
 Symptom = tuple[str, int]
 
@@ -46,6 +47,7 @@ def edited(engine: Engine, number: int, edits: Sequence[Replace], rules: Sequenc
     # Without its last sign of block skip a program runs once.
     tables = Tables(states[min(number, len(states) - 1)][1], machine, job)
     tables.give("other_machine", engine.tables["other_machine"])  # an edit makes it no program for another machine
+    tables["regularity"].known.update(engine.tables["regularity"].known)
     return Engine(tables, engine.severities, rules)
 
 
@@ -55,18 +57,18 @@ def with_hidden(
     hiding: Sequence[Finding],
     number: int,
     edits: Sequence[Replace],
-    check: Check,
+    explain: Explain,
 ) -> list[Finding]:
     """
     Return the findings, with those of the same sections that are found without what hides them.
 
-    hiding: those that may hide others. number: of the run. edits: they explain findings, and leave others. check: gives
-    the findings of a program.
+    hiding: those that may hide others. number: of the run. edits: they explain findings, and leave others. explain:
+    lists under explanations what they explain.
     """
     hiding = [finding for finding in hiding if is_told(finding) and engine.rules[finding.rule].doubts]
     if engine.allows is not None or not (hiding or edits):
         return findings
-    trials = _Trials(engine, number, check)
+    trials = _Trials(engine, number, explain)
     source = engine.trace.text.source
     lines = {source.line_of(start) for start, _, _ in edits}
     sections = {finding.section_line for finding in findings if finding.line in lines}
@@ -76,7 +78,7 @@ def with_hidden(
             return findings
         tried, before = [], symptoms(left)
         for repair in _repairs(engine, finding):
-            others = trials.findings([*edits, *repair])
+            others = trials.findings([*edits, *repair], partial(_may_be_gone, finding, before))
             if others is not None and _is_gone(finding, before, symptoms(others)):
                 repaired = {source.line_of(start) for start, _, _ in repair}
                 tried.append((sum(other.line in repaired for other in others), len(others), repair, others))
@@ -115,18 +117,32 @@ def symptoms(findings: Sequence[Finding]) -> set[Symptom]:
 
 def _is_gone(finding: Finding, before: set[Symptom], after: set[Symptom]) -> bool:
     """A finding is gone, its rule fires nowhere else instead, and no more is found."""
-    counts = [sum(rule != REPORTS for rule, _ in found) for found in (before, after)]
     is_elsewhere = any(rule == finding.rule for rule, _ in after - before)
-    return counts[1] <= counts[0] and (finding.rule, finding.line) not in after and not is_elsewhere
+    return _count(after) <= _count(before) and (finding.rule, finding.line) not in after and not is_elsewhere
+
+
+def _count(found: set[Symptom]) -> int:
+    return sum(rule != REPORTS for rule, _ in found)
+
+
+def _may_be_gone(finding: Finding, before: set[Symptom], after: set[Symptom]) -> bool:
+    """What is listed under an explanation stays a symptom: only what reports explanations may still go or come."""
+    return _count(after) <= _count(before) if finding.rule == REPORTS else _is_gone(finding, before, after)
 
 
 class _Trials:
-    def __init__(self, engine: Engine, number: int, check: Check) -> None:
-        self.engine, self.number, self.check = engine, number, check
+    def __init__(self, engine: Engine, number: int, explain: Explain) -> None:
+        self.engine, self.number, self.explain = engine, number, explain
         self.left = min(_MOST_CHECKS, MOST_ROWS // len(engine.trace))
 
-    def findings(self, edits: Sequence[Replace]) -> list[Finding] | None:
-        """The findings of the program with these edits; None where its lines are others then, or too many are tried."""
+    def findings(
+        self, edits: Sequence[Replace], may_count: Callable[[set[Symptom]], bool] | None = None
+    ) -> list[Finding] | None:
+        """
+        The findings of the program with these edits; None where its lines are others then, or too many are tried.
+
+        may_count: for symptoms that are not explained yet; they are explained where it is True.
+        """
         self.left -= 1
         if self.left < 0 or any("\n" in text for _, _, text in edits):
             return None
@@ -134,7 +150,8 @@ class _Trials:
         lines = self.engine.trace.text.source.line_starts
         if trial is None or len(trial.trace.text.source.line_starts) != len(lines):
             return None
-        return self.check(trial)
+        findings = trial.findings()
+        return self.explain(trial, findings) if may_count is None or may_count(symptoms(findings)) else None
 
 
 def _repairs(engine: Engine, finding: Finding) -> Iterator[list[Replace]]:

@@ -21,3 +21,7 @@ class Correction(NamedTuple):
     remedy: str
     becomes: str
     of: str = "contour"
+
+    def moved(self, rows: int, words: int) -> Correction:
+        """The same so many rows and words later."""
+        return self._replace(row=self.row + rows, word=self.word + words if self.word >= 0 else -1)

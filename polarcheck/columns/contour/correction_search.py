@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Hashable, Iterator
 from itertools import islice
 from typing import NamedTuple
 
@@ -10,10 +10,9 @@ import msgspec
 import numpy as np
 
 from polarcheck.columns.contour.correction import Correction
-from polarcheck.columns.contour.likely_edits import AS_LIKELY, Likely, correction_by, likely_edits
-from polarcheck.columns.contour.loop_edits import outlines_of
+from polarcheck.columns.contour.likely_edits import AS_LIKELY, Likely, all_compared, correction_by, likely_outlines
 from polarcheck.columns.contour.plane_loops import PlaneLoop
-from polarcheck.columns.contour.written_loop import AxisWords, axis_words, written_loop
+from polarcheck.columns.contour.written_loop import AxisWords, WrittenLoop, written_loop
 from polarcheck.columns.trace import Trace
 from polarcheck.columns.words.slips import WORD, Slip, plain_number, slips_of
 from polarcheck.foundation.arrays import Mask, Points, Rows, cached_property
@@ -63,17 +62,28 @@ class Corrections(NamedTuple):
     symmetric: tuple[Correction, ...]
     likely: Correction | None
 
+    def moved(self, rows: int, words: int) -> Corrections:
+        """The same so many rows and words later."""
+        symmetric = tuple(correction.moved(rows, words) for correction in self.symmetric)
+        return Corrections(symmetric, self.likely and self.likely.moved(rows, words))
 
-def corrections_of(trace: Trace, loop: PlaneLoop, written: Symmetry | None) -> Corrections:
+
+def corrections_of(
+    trace: Trace, loop: PlaneLoop, written: Symmetry | None, known: dict[Hashable, Corrections]
+) -> Corrections:
     """
     The corrections of a contour; None where it is as it should be, or is no such contour.
 
-    written: its symmetry as it is written.
+    written: its symmetry as it is written. known: those of contours of the file that are written in the same words in
+    the same lines, by these words; rows and words are counted from the first ones of the contour.
     """
     search = _Search(trace, loop, written)
-    best = search.best()
-    symmetric = search.of_two_corners() if best is None else (best,)
-    return Corrections(symmetric, None if symmetric else search.likely)
+    row, word, key = search.content
+    if key not in known:
+        best = search.best()
+        symmetric = search.of_two_corners() if best is None else (best,)
+        known[key] = Corrections(symmetric, None if symmetric else search.likely).moved(-row, -word)
+    return known[key].moved(row, word)
 
 
 class _Search:
@@ -99,11 +109,11 @@ class _Search:
     def _fitting(self, trials: Iterator[_Trial]) -> Iterator[tuple[int, int, Correction]]:
         """The trials that make the contour regular: what they leave free, their number, the correction."""
         for number, trial in enumerate(islice(trials, _MOST_TRIALS)):
-            symmetry = trial.loop.symmetry(trial.point)
             # Where one block more leaves an arc that is none, it goes round that.
-            is_added = len(trial.point) > len(self.loop.point)
-            leaves_arc = is_added and bool(np.isnan(trial.loop.bulges(trial.point)).any())
-            if symmetry is not None and not leaves_arc and self._is_better(symmetry, trial):
+            if len(trial.point) > len(self.loop.point) and np.isnan(trial.loop.bulges(trial.point)).any():
+                continue
+            symmetry = trial.loop.symmetry(trial.point)
+            if symmetry is not None and self._is_better(symmetry, trial):
                 row, slip = self._row(trial.at), trial.slip
                 remedy, becomes = _remedy(slip), _becomes(symmetry)
                 yield symmetry.freedom, number, Correction(row, trial.word, slip.text, slip.kind, remedy, becomes)
@@ -160,24 +170,48 @@ class _Search:
         return row
 
     @cached_property
+    def _written(self) -> WrittenLoop:
+        return written_loop(self.trace, self._row_of_points)
+
+    @property
     def _axes(self) -> tuple[AxisWords, AxisWords]:
-        return axis_words(self.trace, self._row_of_points)
+        return self._written.axes
+
+    @property
+    def content(self) -> tuple[int, int, Hashable]:
+        """The first row and word of the loop, and all that its corrections depend on, but for what no edit changes."""
+        trace, loop, written = self.trace, self.loop, self._written
+        words = np.concatenate([*(axis.word for axis in written.axes), written.code, *written.arc_words.values()])
+        row, word = int(loop.row[1]), int(words.min(where=words >= 0, initial=len(trace.run.words.value)))
+        columns = (
+            np.where(words >= 0, words - word, -1),
+            loop.row - row,
+            self._row(len(loop.row)) - row,
+            trace.blocks.line[loop.row],
+            trace.lengths.scale[loop.row],
+            *(part for axis in written.axes for part in (axis.scale, axis.direction, axis.value, axis.is_step)),
+            *(written.start, written.turns, written.radius, written.to_center, written.tolerance),
+            *(loop.point, loop.turns, loop.radius, loop.to_center, loop.last_digit),
+        )
+        texts = (
+            *(trace.run.written(index) for index in words[words >= 0].tolist()),
+            *(axis.address for axis in self._axes),
+        )
+        return row, word, (*texts, *(np.asarray(column).tobytes() for column in columns))
 
     # ---- one edit ----
 
     def _of_edits(self) -> Correction | None:
         """The likeliest edit that makes the contour symmetric; where one in another block is as likely, with that."""
-        loop = written_loop(self.trace, self._row_of_points)
         # Where sides are divided, the number of different lengths tells nothing.
         may_be_likely = not _are_within_sides(self.loop.point, self.loop.turns).any()
         found: list[tuple[Likely, Correction, Symmetry]] = []
         best = -1
-        for likely in likely_edits(self.trace, loop, _MOST_EDITS, _LEAST_GAIN):
+        for likely, outline in likely_outlines(all_compared(self.trace, self._written), _MOST_EDITS, _LEAST_GAIN):
             if best >= 0 and found[best][0].gain - likely.gain > AS_LIKELY:
                 break
             edit = likely.edit
-            outline = outlines_of(loop, [edit])
-            point, turns, radius, to_center = (part[1] for part in outline)
+            point, turns, radius, to_center = (part[0] for part in outline)
             edited = msgspec.structs.replace(self.loop, turns=turns, radius=radius, to_center=to_center)
             moves_side = not edit.is_of_pen and self._keeps_directions(point)
             slip = Slip(edit.text, edit.why, edit.is_plain and not moves_side, edit.is_common)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from itertools import islice
 from typing import NamedTuple
 
 import numpy as np
@@ -10,6 +12,7 @@ from polarcheck.columns.contour.correction import Correction
 from polarcheck.columns.contour.loop_edits import Edit, edits_of, outlines_of, with_edit
 from polarcheck.columns.contour.written_loop import WrittenLoop
 from polarcheck.columns.trace import Trace
+from polarcheck.foundation.arrays import Floats
 from polarcheck.geometry.regularity.coincidences import Chances, Outlines, chances_of
 
 #: An edit must leave so much less to chance than what is written: 2.5, of which the sum of the parts may be a bit less.
@@ -28,6 +31,8 @@ _OF_LOST_CORNER = 2.0
 _OF_LEAD = 2.0
 #: Edits that are looked at for two mistakes, and second edits of each; kinds of edits that are none of two.
 _FIRST_EDITS, _SECOND_EDITS, _OF_BLOCKS = 8, 2, ("twice", "order")
+#: The least gain alone of the second of two edits: one that makes a path worse by itself mends nothing in it.
+_LEAST_ALONE = -1.0
 #: Points of all edits of a path together, above which none is searched.
 _MOST_POINTS = 400_000
 
@@ -55,24 +60,55 @@ def correction_by(likely: Likely, row: int) -> Correction:
     return Correction(row, word, edit.text, edit.why, edit.remedy, likely.becomes)
 
 
-def likely_edits(
-    trace: Trace, loop: WrittenLoop, most: int, least_gain: float = LEAST_GAIN, *, is_one_of_two: bool = False
-) -> list[Likely]:
+class Compared(NamedTuple):
     """
-    The edits that leave least to chance, the likeliest first, each path once; none where none is clearly better.
+    Edits of a path, each of which changes one slip of the pen.
 
-    least_gain: how many coordinates fewer are as they are by chance. is_one_of_two: another edit is made beside it.
+    outlines, chances: of the path as it is written, and with each of them. gain: how many coordinates fewer are as they
+    are by chance.
     """
-    edits = edits_of(trace, loop)
-    if (len(edits) + 1) * len(loop.row) > _MOST_POINTS:
-        return []
+
+    loop: WrittenLoop
+    edits: list[Edit]
+    outlines: Outlines
+    chances: Chances
+    gain: Floats
+
+
+def likely_edits(compared: Compared, most: int, least_gain: float) -> list[Likely]:
+    """The edits that leave least to chance, the likeliest first, each path once; none where none is clearly better."""
+    return [likely for likely, _ in likely_outlines(compared, most, least_gain)]
+
+
+def likely_outlines(compared: Compared, most: int, least_gain: float) -> list[tuple[Likely, Outlines]]:
+    """The same, each with the path that it makes, as the one outline of a table."""
+    point, turns, radius, to_center = compared.outlines
+    return [
+        (_likely(compared, number), Outlines(point[[number]], turns[[number]], radius[[number]], to_center[[number]]))
+        for number in _likeliest(compared, most, least_gain)
+    ]
+
+
+def all_compared(trace: Trace, loop: WrittenLoop) -> Compared:
+    """All edits of a path in comparison, or none where they are too many."""
+    return _compared(loop, edits_of(trace, loop))
+
+
+def _compared(loop: WrittenLoop, edits: Iterable[Edit]) -> Compared:
+    most = _MOST_POINTS // len(loop.row)
+    edits = [*islice(edits, most)]
+    edits = edits if len(edits) < most else []
     outlines = outlines_of(loop, edits)
     chances = chances_of(outlines, loop.tolerance)
-    cost = [edit.cost + _OF_LEAD * (not edit.corner) for edit in edits]
-    total = chances.total + np.array([0.0, *cost])
+    total = chances.total + np.array([0.0, *(edit.cost + _OF_LEAD * (not edit.corner) for edit in edits)])
     # A shape that loses corners is another shape.
     lost = np.maximum(chances.corners[0] - chances.corners - 1, 0)
-    gain = total[0] - total - _OF_LOST_CORNER * lost
+    return Compared(loop, edits, outlines, chances, total[0] - total - _OF_LOST_CORNER * lost)
+
+
+def _likeliest(compared: Compared, most: int, least_gain: float, *, is_one_of_two: bool = False) -> list[int]:
+    """The outlines that leave least to chance, the likeliest first. is_one_of_two: another edit is made beside it."""
+    loop, _, outlines, chances, gain = compared
     witness = chances.without_broken_arcs[0] - chances.without_broken_arcs
     # A gain that is not clear must be more than lengths and points that are alike.
     is_better = np.any([part < part[0] for part in chances[:4]], axis=0)
@@ -90,27 +126,27 @@ def likely_edits(
             found.append(number)
     if found and not is_one_of_two and _leaves_corner(chances, outlines, found[0]):
         return []
-    closes, smooths = ((part == 0) & (part[0] > 0) for part in (chances.is_open, chances.corners_at_arcs))
-    return [
-        Likely(
-            edits[number - 1],
-            float(gain[number]),
-            _becomes(chances, number),
-            bool(closes[number]),
-            bool(smooths[number]),
-            bool(gain[number] >= LEAST_GAIN),
-        )
-        for number in found
-    ]
+    return found
 
 
-def likely_pairs(trace: Trace, loop: WrittenLoop, most: int) -> list[tuple[Likely, Likely]]:
+def _likely(compared: Compared, number: int) -> Likely:
+    _, edits, _, chances, gain = compared
+    closes, smooths = (bool(part[number] == 0 and part[0] > 0) for part in (chances.is_open, chances.corners_at_arcs))
+    is_clear = bool(gain[number] >= LEAST_GAIN)
+    return Likely(edits[number - 1], float(gain[number]), _becomes(chances, number), closes, smooths, is_clear)
+
+
+def likely_pairs(trace: Trace, compared: Compared, most: int) -> list[tuple[Likely, Likely]]:
     """The pairs of edits of different words that leave least to chance, each of which does so beside the other one."""
+    worse = {edit[:4] for edit, gain in zip(compared.edits, compared.gain[1:], strict=True) if gain < _LEAST_ALONE}
     found: dict[tuple[str, ...], tuple[float, Likely, Likely]] = {}
-    for first in likely_edits(trace, loop, _FIRST_EDITS, LEAST_IF_WHOLE, is_one_of_two=True):
+    for number in _likeliest(compared, _FIRST_EDITS, LEAST_IF_WHOLE, is_one_of_two=True):
+        first = _likely(compared, number)
         if first.edit.kind in _OF_BLOCKS:
             continue
-        for second in likely_edits(trace, with_edit(loop, first.edit), _SECOND_EDITS, LEAST_IF_WHOLE):
+        other = with_edit(compared.loop, first.edit)
+        beside = _compared(other, (edit for edit in edits_of(trace, other) if edit[:4] not in worse))
+        for second in (_likely(beside, at) for at in _likeliest(beside, _SECOND_EDITS, LEAST_IF_WHOLE)):
             if second.edit.kind in _OF_BLOCKS or second.edit.corner == first.edit.corner:
                 continue
             one, two = sorted((first, second), key=lambda likely: likely.edit.corner)
@@ -132,7 +168,8 @@ def _differs(outlines: Outlines, first: int, second: int, tolerance: float) -> b
     if np.abs(outlines.point[first] - outlines.point[second]).max() > tolerance:
         return True
     parts = ((part[first], part[second]) for part in outlines[1:])
-    return not all(np.allclose(one, other, atol=tolerance, equal_nan=True) for one, other in parts)
+    alike = ((np.abs(one - other) <= tolerance) | (np.isnan(one) & np.isnan(other)) for one, other in parts)
+    return not all(part.all() for part in alike)
 
 
 def _becomes(chances: Chances, number: int) -> str:

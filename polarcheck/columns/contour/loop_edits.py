@@ -70,13 +70,14 @@ class Edit(NamedTuple):
         return self.cost < _ELSEWHERE
 
 
-def edits_of(trace: Trace, loop: WrittenLoop) -> list[Edit]:
+def edits_of(trace: Trace, loop: WrittenLoop) -> Iterator[Edit]:
     """All edits of a path, the likelier first where they say the same."""
-    axes = range(2)
-    found = [edit for axis in axes for edit in _of_axis(trace, loop, axis)]
-    found += [edit for address in loop.arc_words for edit in _of_arcs(trace, loop, address)]
-    found += [*_of_codes(trace, loop), *_of_blocks(loop)]
-    return found
+    for axis in range(2):
+        yield from _of_axis(trace, loop, axis)
+    for address in loop.arc_words:
+        yield from _of_arcs(trace, loop, address)
+    yield from _of_codes(trace, loop)
+    yield from _of_blocks(loop)
 
 
 def _of_axis(trace: Trace, loop: WrittenLoop, number: int) -> Iterator[Edit]:
@@ -290,12 +291,22 @@ def _changed(loop: WrittenLoop, edits: list[Edit]) -> tuple[list[Floats], list[M
     steps = [np.repeat(axis.is_step[None], count, 0) for axis in axes]
     turns, radius = np.repeat(loop.turns[None], count, 0), np.repeat(loop.radius[None], count, 0)
     to_center = np.repeat(loop.to_center[None], count, 0)
+    for axis in range(2):
+        # Most edits change one number.
+        changes = [
+            (number, edit.corner, edit.value, edit.kind == "missing" and edit.text.startswith(axes[axis].step_address))
+            for number, edit in enumerate(edits, 1)
+            if edit.axis == axis and edit.kind in ("word", "missing")
+        ]
+        if changes:
+            numbers, corners, changed, is_step = (np.array(part) for part in zip(*changes, strict=True))
+            values[axis][numbers, corners] = changed
+            steps[axis][numbers, corners] |= is_step
     for number, edit in enumerate(edits, 1):
         at = number, edit.corner
         match edit.kind:
             case "word" | "missing":
-                values[edit.axis][at] = edit.value
-                steps[edit.axis][at] |= edit.kind == "missing" and edit.text.startswith(axes[edit.axis].step_address)
+                pass
             case "letter":
                 values[1 - edit.axis][at], values[edit.axis][at] = values[edit.axis][at], np.nan
                 steps[1 - edit.axis][at] = steps[edit.axis][at]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Hashable, Iterable
 from typing import TYPE_CHECKING
 
 import msgspec
@@ -95,6 +95,11 @@ class Regularity(Columns, frozen=True):
     # ---- one word or block ----
 
     @cached_property
+    def known(self) -> dict[Hashable, Corrections]:
+        """Corrections by how a contour is written; an edited program begins with those of the program before."""
+        return {}
+
+    @cached_property
     def _corrected(self) -> list[tuple[PlaneLoop, Corrections]]:
         """The loops with what may be meant instead of them."""
         loops = [(loop, written) for loop, written in self._loops if written is None or not written.is_turned]
@@ -105,7 +110,7 @@ class Regularity(Columns, frozen=True):
         corrected = []
         for loop, written in loops:
             keep_time()
-            corrected.append((loop, corrections_of(self.trace, loop, written)))
+            corrected.append((loop, corrections_of(self.trace, loop, written, self.known)))
         return corrected
 
     @property

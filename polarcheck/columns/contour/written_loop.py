@@ -65,10 +65,11 @@ class WrittenLoop(NamedTuple):
         point = np.zeros(values[0].shape, np.complex128)
         for axis, value, step in zip(self.axes, values, is_step, strict=True):
             length, has = value * axis.scale, ~np.isnan(value)
-            way = np.cumsum(np.where(has & step, length, 0.0), axis=1)
+            way = np.cumsum(np.where(has & step, length, 0.0), axis=1) if step.any() else np.zeros((1, has.shape[1]))
             last = np.maximum.accumulate(np.where(has & ~step, np.arange(value.shape[1]), -1), axis=1)
             at = np.maximum(last, 0)
-            base = np.take_along_axis(np.nan_to_num(length), at, 1) - np.take_along_axis(way, at, 1)
+            base = np.take_along_axis(np.nan_to_num(length), at, 1)
+            base -= np.take_along_axis(way, at, 1) if step.any() else 0.0
             start = (self.start / axis.direction).real - way[:, :1]
             point += (np.where(last >= 0, base, start) + way) * axis.direction
         return point

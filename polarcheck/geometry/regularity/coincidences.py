@@ -135,12 +135,18 @@ def _overlaps(point: Points, turns: Rows, tolerance: float) -> Mask:
 
 def _sweeps(outlines: Outlines, length: Floats, moves: Mask, tolerance: float) -> tuple[Floats, Mask, Floats]:
     """The sweep of each edge [rad], 0 for lines; whether it is an arc that misses its end; how far all miss it."""
-    point, turns, radius, to_center = outlines
+    swept, broken = np.zeros(length.shape), np.zeros(length.shape, bool)
+    # Most edges are lines in all of the outlines.
+    arcs = (outlines.turns != 0).any(axis=0)
+    if not arcs.any():
+        return swept, broken, np.zeros(len(length))
+    turns, radius, to_center = (part[:, arcs] for part in outlines[1:])
+    chord, length, moves = np.diff(outlines.point, axis=1)[:, arcs], length[:, arcs], moves[:, arcs]
     is_arc, by_radius = turns != 0, ~np.isnan(radius)
     size = np.abs(radius)
     of_radius = 2 * np.arcsin(np.minimum(length / 2 / np.maximum(size, _NONE), 1.0))
     of_radius = np.where(radius < 0, 2 * np.pi - of_radius, of_radius)
-    from_center = np.diff(point, axis=1) - to_center
+    from_center = chord - to_center
     of_center = np.angle(from_center * -to_center.conj()) * turns
     of_center = np.where((of_center <= 0) | ~moves, of_center + 2 * np.pi, of_center)
     of_center = np.where(moves, of_center, 2 * np.pi)
@@ -151,12 +157,16 @@ def _sweeps(outlines: Outlines, length: Floats, moves: Mask, tolerance: float) -
         (off_circle > 2 * tolerance) | (np.abs(to_center) < tolerance),
     )
     off = np.where(is_arc & ~by_radius, np.minimum(off_circle / (2 * tolerance), 1.0), 0.0).sum(axis=1)
-    return np.where(is_arc, np.where(by_radius, of_radius, of_center), 0.0), is_arc & is_broken, off
+    swept[:, arcs] = np.where(is_arc, np.where(by_radius, of_radius, of_center), 0.0)
+    broken[:, arcs] = is_arc & is_broken
+    return swept, broken, off
 
 
 def _turns(direction: Points, bend: Floats, is_edge: Mask, is_arc: Mask) -> tuple[Floats, Mask, Mask]:
     """By which angle the path turns where each edge begins [rad]; whether one of them is an arc; whether two meet."""
-    begins, ends = direction * np.exp(-1j * bend), direction * np.exp(1j * bend)
+    begins, ends, bent = direction.copy(), direction.copy(), (bend != 0).any(axis=0)
+    begins[:, bent] *= np.exp(-1j * bend[:, bent])
+    ends[:, bent] *= np.exp(1j * bend[:, bent])
     number = np.maximum.accumulate(np.where(is_edge, np.arange(is_edge.shape[1]), -1), axis=1)
     before = np.concatenate([np.full((len(number), 1), -1), number[:, :-1]], axis=1)
     meets = is_edge & (before >= 0)

@@ -117,8 +117,9 @@ def _simplified(corner: Points, bulge: Floats) -> Ring:
     for _ in range(len(corner)):
         if len(corner) < _FEWEST:
             break
-        before, after = np.roll(corner, 1), np.roll(corner, -1)
-        into, out = np.roll(bulge, 1), bulge
+        order = np.arange(len(corner))
+        before, after = corner[order - 1], corner[order - len(corner) + 1]
+        into, out = bulge[order - 1], bulge
         is_tip = (np.abs(after - before) <= _SAME) & (into == 0) & (out == 0)
         if is_tip.any():
             tip = int(np.argmax(is_tip))
