@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 from cases import looped
 from programs import report_of
+
+from polarcheck.columns.words import comment_reader
+from polarcheck.columns.words.comment_patterns import PART_SIZE, ROUGHING, TITLE_DIAMETER
 
 RULE = "comment-contradicts-part"
 HEXAGON = (
@@ -251,3 +256,29 @@ def test_a_diameter_in_the_title() -> None:
     assert messages("T0101", PIN, title="O1 (SHAFT DIA 40)") == []
     assert messages(turning, PIN, title="O1 (SHAFT DIA 20)") == []
     assert messages("T0101 (DIA 20)", PIN) == []
+
+
+#: A comment for each way in which a form of sizes can be written, with the words that spare its pattern.
+_WITH_FORMS = [
+    *(f"{name} 24" for name in ("HEX", "HEXAGON", "SECHSKANT", "6KT", "6-KT", "6KANT", "6-KANT")),
+    *(f"{name} AF 24" for name in ("SQ", "SQUARE", "VIERKANT", "4KT", "4-KT", "4KANT", "4-KANT", "OCT", "PENT")),
+    *(form for name in ("HEX", "SQ", "OCT", "PENT") for form in (f"24 AF {name}", f"24MM {name}")),
+    *("FLATS AT 22", "FLATS ACROSS FLATS 22", "KEYWAY 6"),
+    *("DIA 30 BOSS", "PIN DIA 30", "30 DIA ECC", "\u00d830 ROUND ECCENTRIC"),
+    *("24 AF", "24 A/F", "24 A.F.", "24 ACROSS THE FLATS", "24 SW", "AF 24", "A/F 24", "SW 24"),
+    *("DIA 30", "DIAMETER 30", "\u00d830", "\u230030"),
+]
+
+
+def test_each_comment_of_a_form_has_one_of_its_words() -> None:
+    forms = [*PART_SIZE.forms, TITLE_DIAMETER]
+    matching = [(form, comment) for form in forms for comment in _WITH_FORMS if re.search(form.pattern, comment)]
+    assert {form.pattern for form, _ in matching} == {form.pattern for form in forms}
+    assert all(any(word in comment for word in form.words) for form, comment in matching)
+
+
+def test_each_word_of_roughing_has_one_of_an_allowance() -> None:
+    left = "ROUGHING, SEMI FINISH, SEMIFIN, LEAVES, LEAVING, ALLOWANCE, SCHRUPPEN, AUFMASS, UEBERMASS, EBAUCHE"
+    for comment in f"{left}, SURepaisseur, SGROSSATURA, SOVRAMETALLO, DESBASTE".upper().split(", "):
+        assert re.search(ROUGHING, comment)
+        assert comment_reader.allowance_in(comment, in_inch=False) > 0

@@ -162,7 +162,7 @@ class PartComments(Columns, frozen=True):
 
     def _statements(self) -> Iterator[PartComment]:
         """What comments state, without the sections."""
-        words = (*PART_SIZE.words, *PART_DEPTH.words, TITLE_DIAMETER.word)
+        words = (*PART_SIZE.words, *PART_DEPTH.words, TITLE_DIAMETER.words[0])
         for number, written, row, is_behind, in_inch in self.comments.with_words(words):
             if is_behind:
                 continue

@@ -40,12 +40,12 @@ class Form(msgspec.Struct, frozen=True):
 
     gives: of what the size is.
     pattern: has the number and its unit as groups 1 and 2.
-    word: found in each comment of this form, "" for any.
+    words: one of them stands in each comment of this form; empty for any. They spare the pattern of the others.
     """
 
     gives: str
     pattern: str
-    word: str = ""
+    words: tuple[str, ...] = ()
 
 
 class Subject(msgspec.Struct, frozen=True):
@@ -128,14 +128,16 @@ _NOT_AFTER = (
     r"|PL[AC]|OFF\b|P[CT]S|DEG|TIMES|OF\b|FL\b|TPI|PITCH))"
 )
 _ROUND_PART = r"(?:BOSS\b|PIN\b(?!\s*+HOLE)|ECC(?:ENTRIC)?\b)"
+_ROUND_PARTS = "BOSS", "PIN", "ECC"
+_AF_WORDS = "AF", "A/F", "A.F", "ACROSS", "SW"
 _WHOLE = r"(?<![\w.,/-])"
 
 
-def _polygon(name: str, word: str) -> tuple[Form, ...]:
+def _polygon(name: str, word: str, *words: str) -> tuple[Form, ...]:
     return (
-        Form(name, rf"{_WHOLE}{word}{_IS}(?:{_AF}{_IS})?{_VALUE}{_NOT_AFTER}", word),  # HEX 24 AF, SQUARE 20
-        Form(name, rf"{_WHOLE}{_SIZE}[\s-]*+{_AF}[\s-]*+{word}", word),  # 24 AF HEX
-        Form(name, rf"^{_SIZE}[\s-]++{word}\s*+$", word),  # 24MM HEX
+        Form(name, rf"{_WHOLE}{word}{_IS}(?:{_AF}{_IS})?{_VALUE}{_NOT_AFTER}", words),  # HEX 24 AF, SQUARE 20
+        Form(name, rf"{_WHOLE}{_SIZE}[\s-]*+{_AF}[\s-]*+{word}", words),  # 24 AF HEX
+        Form(name, rf"^{_SIZE}[\s-]++{word}\s*+$", words),  # 24MM HEX
     )
 
 
@@ -149,17 +151,17 @@ PART_SIZE: Final = Subject(
         r"|\bNEXT\b|\bOP\s?\d|\bMIN\b|\bMAX\b|\bOR\b|\bM\d"
     ),
     forms=(
-        *_polygon("hexagon", r"(?:HEX(?:AGON)?|SECHSKANT|6-?KT|6-?KANT)(?![A-Z])"),
-        *_polygon("square", r"(?:SQ(?:UARE)?|VIERKANT|4-?KT|4-?KANT)(?![A-Z])"),
-        *_polygon("octagon", r"OCT(?:AGON)?(?![A-Z])"),
-        *_polygon("pentagon", r"PENT(?:AGON)?(?![A-Z])"),
-        Form("flats", rf"{_WHOLE}FLATS{_IS}(?:AT\s++|{_AF}{_IS})?{_VALUE}{_NOT_AFTER}", "FLATS"),
-        Form("boss", rf"{_WHOLE}{_PART_DIAMETER}{_IS}{_VALUE}\s*+(?:ROUND\s++)?{_ROUND_PART}", _ROUND_PART),
-        Form("boss", rf"{_WHOLE}{_ROUND_PART}{_IS}{_PART_DIAMETER}{_IS}{_VALUE}{_NOT_AFTER}", _ROUND_PART),
-        Form("boss", rf"{_WHOLE}{_SIZE}\s*+{_PART_DIAMETER}\s*+{_ROUND_PART}", _ROUND_PART),
-        Form("keyway", rf"{_WHOLE}KEYWAY{_IS}{_VALUE}(?!\s*+-?(?:DEEP|LONG|PL[AC]|OFF\b|P[CT]S|DEG))", "KEYWAY"),
-        Form("", rf"{_WHOLE}{_SIZE}\s*+{_AF}", r"A[/.]?F|ACROSS|SW"),
-        Form("", rf"{_WHOLE}(?:A/?F|SW){_IS}{_VALUE}{_NOT_AFTER}", r"A[/.]?F|ACROSS|SW"),
+        *_polygon("hexagon", r"(?:HEX(?:AGON)?|SECHSKANT|6-?KT|6-?KANT)(?![A-Z])", "HEX", "SECHSKANT", "6K", "6-K"),
+        *_polygon("square", r"(?:SQ(?:UARE)?|VIERKANT|4-?KT|4-?KANT)(?![A-Z])", "SQ", "VIERKANT", "4K", "4-K"),
+        *_polygon("octagon", r"OCT(?:AGON)?(?![A-Z])", "OCT"),
+        *_polygon("pentagon", r"PENT(?:AGON)?(?![A-Z])", "PENT"),
+        Form("flats", rf"{_WHOLE}FLATS{_IS}(?:AT\s++|{_AF}{_IS})?{_VALUE}{_NOT_AFTER}", ("FLATS",)),
+        Form("boss", rf"{_WHOLE}{_PART_DIAMETER}{_IS}{_VALUE}\s*+(?:ROUND\s++)?{_ROUND_PART}", _ROUND_PARTS),
+        Form("boss", rf"{_WHOLE}{_ROUND_PART}{_IS}{_PART_DIAMETER}{_IS}{_VALUE}{_NOT_AFTER}", _ROUND_PARTS),
+        Form("boss", rf"{_WHOLE}{_SIZE}\s*+{_PART_DIAMETER}\s*+{_ROUND_PART}", _ROUND_PARTS),
+        Form("keyway", rf"{_WHOLE}KEYWAY{_IS}{_VALUE}(?!\s*+-?(?:DEEP|LONG|PL[AC]|OFF\b|P[CT]S|DEG))", ("KEYWAY",)),
+        Form("", rf"{_WHOLE}{_SIZE}\s*+{_AF}", _AF_WORDS),
+        Form("", rf"{_WHOLE}(?:A/?F|SW){_IS}{_VALUE}{_NOT_AFTER}", _AF_WORDS),
     ),
     least=2.0,
     largest=500.0,
@@ -169,7 +171,9 @@ PART_SIZE: Final = Subject(
 FROM_BAR: Final = r"\b(?:FROM|AUS)\b"
 NAME_OF_BAR: Final = rf"{_NOUN}|\bROH\b"
 #: The diameter of a part in its title.
-TITLE_DIAMETER: Final = Form("round", rf"{_WHOLE}(?:DIA(?:M(?:ETER)?)?\b\.?|\u00d8|\u2300){_IS}{_VALUE}", "DIA")
+TITLE_DIAMETER: Final = Form(
+    "round", rf"{_WHOLE}(?:DIA(?:M(?:ETER)?)?\b\.?|\u00d8|\u2300){_IS}{_VALUE}", ("DIA", "\u00d8", "\u2300")
+)
 PART_DEPTH: Final = Subject(
     words=("DEPTH", "DEEP"),
     # Depths of cuts, and of what this section does not cut.
@@ -192,7 +196,8 @@ _LEAVES = (
     r"(?:\bLEAV(?:E|ES|ING)\b|\bALLOWANCE\b|\bSTOCK\b|AUFMA(?:SS|\u00df)\b|\bUEBERMASS\b|\bSUR.PAISSEUR\b"
     r"|\bSOVRAMETALLO\b)"
 )
-#: Words by which a tool leaves metal for another one, by language: English, German, French, Italian, Spanish.
+#: Words by which a tool leaves metal for another one, by language: English, German, French, Italian, Spanish. Each has
+#: one of the words of ALLOWANCE.
 ROUGHING: Final = (
     r"\bROUGH|\bSEMI-?\s?FIN|\bLEAV(?:E|ES|ING)\b|\bALLOW|SCHRUPP|AUFMA(?:SS|\u00df)\b|\bUEBERMASS\b|BAUCHE"
     r"|\bSUR.PAISSEUR\b|SGROSS|\bSOVRAMETALLO\b|DESBAST"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import re
 from collections.abc import Iterator
 
@@ -38,8 +37,6 @@ from polarcheck.columns.words.comment_patterns import (
 )
 from polarcheck.foundation.states import MM_PER_INCH
 
-#: The forms of sizes of the part by their word.
-_PART_FORMS = {word: [*forms] for word, forms in itertools.groupby(PART_SIZE.forms, lambda form: form.word)}
 _MILLIMETERS = "MM"
 #: Fractions of an inch have these denominators.
 _DENOMINATORS = (2, 4, 8, 16, 32, 64)
@@ -121,10 +118,11 @@ def shapes_in(comment: str, in_inch: bool) -> list[StatedShape]:
     if not _may_state(PART_SIZE, text) or allowance_in(comment, in_inch):
         return []
     bar, text = bar_in(comment, in_inch), _without_bar(text)
-    forms = [form for word, forms in _PART_FORMS.items() if re.search(word, text) for form in forms]
     sizes: dict[StatedShape, None] = {}
     is_across_flats = bool(re.search(ACROSS_FLATS, text))
-    for form in forms:
+    for form in PART_SIZE.forms:
+        if not _has_any(form.words, text):
+            continue
         if not form.gives and any(size.shape for size in sizes):
             break
         for match in re.finditer(form.pattern, text):
@@ -139,6 +137,8 @@ def shapes_in(comment: str, in_inch: bool) -> list[StatedShape]:
 def title_diameter_in(comment: str, in_inch: bool) -> float | None:
     """The largest diameter that the title of a program states of the part [mm]."""
     text = plain_text(comment)
+    if not _has_any(TITLE_DIAMETER.words, text):
+        return None
     is_other = re.search(rf"{ANY_CUTTER}|{PART_SIZE.never}", text) or allowance_in(comment, in_inch)
     if is_other or bar_in(comment, in_inch) is not None:
         return None
@@ -160,6 +160,8 @@ def depth_in(comment: str, in_inch: bool) -> float | None:
 def allowance_in(comment: str, in_inch: bool) -> float:
     """The metal that a comment says is left for another tool [mm]; _LEFT where it does not say how much, 0 for none."""
     text = plain_text(comment)
+    if not _has_any(ALLOWANCE.words, text):
+        return 0.0
     stated = [size for _, size in _allowances(text, in_inch)]
     return max(stated, default=_LEFT if re.search(ROUGHING, text) else 0.0)
 
@@ -190,13 +192,17 @@ def speaks_of_tool(comment: str) -> bool:
 # ---- sizes ----
 
 
+def _has_any(words: tuple[str, ...], text: str) -> bool:
+    return any(word in text for word in words)
+
+
 def _may_state(subject: Subject, text: str) -> bool:
-    return any(word in text for word in subject.words) and not re.search(subject.never, text)
+    return _has_any(subject.words, text) and not re.search(subject.never, text)
 
 
 def _allowances(text: str, in_inch: bool) -> Iterator[tuple[str, float]]:
     """What a comment writes of metal that is left, and how much that is [mm]."""
-    for form in ALLOWANCE.forms:
+    for form in ALLOWANCE.forms if _has_any(ALLOWANCE.words, text) else ():
         for match in re.finditer(form.pattern, text):
             size = _size(ALLOWANCE, match, in_inch)
             if size is not None:
