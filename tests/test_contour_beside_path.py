@@ -106,10 +106,10 @@ def test_line_and_arc_meet() -> None:
 
 
 def test_full_circle() -> None:
-    contour = contour_beside([Piece(14, 14, 0j, 1, is_full=True)], R)
-    assert contour == [Piece(10, 10, 0j, 1, is_full=True)]
+    contour = contour_beside([Piece(14, 14, 0j, 1)], R)
+    assert contour == [Piece(10, 10, 0j, 1)]
 
 
 def test_nothing_within_a_small_circle() -> None:
     with pytest.raises(NoContourError):
-        contour_beside([Piece(3, 3, 0j, 1, is_full=True)], R)
+        contour_beside([Piece(3, 3, 0j, 1)], R)

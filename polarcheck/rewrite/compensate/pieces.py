@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import cmath
 import math
 
 import msgspec
 
 from polarcheck.geometry.tolerances import ZERO
+from polarcheck.rewrite.writing.written_arcs import arc_between, swept
 
 #: Lines whose directions differ by no more are parallel [rad].
 _PARALLEL = 1e-12
@@ -17,10 +17,9 @@ class Piece(msgspec.Struct, frozen=True):
     """
     A line or an arc.
 
-    start, end: plane points [mm].
+    start, end: plane points [mm]; an arc whose ends are one point is a full circle.
     center: center of an arc; None for a line.
     turning: 1 counterclockwise, -1 clockwise, 0 for a line.
-    is_full: True for a full circle.
     move: number of the move that it comes from.
     """
 
@@ -28,7 +27,6 @@ class Piece(msgspec.Struct, frozen=True):
     end: complex
     center: complex | None = None
     turning: int = 0
-    is_full: bool = False
     move: int = -1
 
     @property
@@ -56,13 +54,7 @@ class Piece(msgspec.Struct, frozen=True):
     @property
     def sweep(self) -> float:
         """Angle of an arc [rad], above 0; 0 for a line."""
-        if self.center is None:
-            return 0.0
-        if self.is_full:
-            return math.tau
-        return (
-            self.turning * cmath.phase((self.start - self.center).conjugate() * (self.end - self.center))
-        ) % math.tau
+        return 0.0 if self.center is None else abs(swept(self.start, self.end, self.center, self.turning > 0))
 
     @property
     def length(self) -> float:
@@ -73,9 +65,7 @@ class Piece(msgspec.Struct, frozen=True):
         """Return the point at a share of the piece, 0 to 1; on a spiral if the end of an arc is off its circle."""
         if self.center is None:
             return self.start + share * (self.end - self.start)
-        first, last = self.start - self.center, abs(self.end - self.center)
-        spoke = cmath.rect(abs(first) + share * (last - abs(first)), cmath.phase(first))
-        return self.center + spoke * cmath.exp(1j * self.turning * self.sweep * share)
+        return arc_between(self.start, self.end, self.center, self.turning > 0).at(share)
 
     @property
     def back(self) -> Piece:
@@ -84,11 +74,9 @@ class Piece(msgspec.Struct, frozen=True):
 
     def replaced(self, start: complex | None = None, end: complex | None = None) -> Piece:
         """Return the piece with another start or end on the same line or circle."""
-        piece = msgspec.structs.replace(
+        return msgspec.structs.replace(
             self, start=self.start if start is None else start, end=self.end if end is None else end
         )
-        full = piece.is_full and abs(piece.start - piece.end) <= ZERO
-        return piece if full == piece.is_full else msgspec.structs.replace(piece, is_full=full)
 
 
 def moved_aside(piece: Piece, aside: float) -> Piece | None:

@@ -107,7 +107,7 @@ def _past_its_beginning(contour: Contour, ring: list[Piece], enters: int) -> Ram
     stretch = _stretch(ring, radius, corner)
     again = [msgspec.structs.replace(piece, move=contour.last) for piece in _beginning(ring, stretch)]
     path = [*(ring if enters >= 0 else _rest_after(ring, stretch)), *again]
-    if enters < 0 and ring[0].is_full and len(ring) == 1:
+    if enters < 0 and ring[0].sweep == math.tau and len(ring) == 1:
         path = [ring[0].replaced(path[0].start, path[0].start)]
     return Ramped(contour_beside(path, contour.aside), enters, -1, ring[-1].end)
 
@@ -134,7 +134,7 @@ def _arcs(moves: Sequence[Move], numbers: Sequence[int], point: complex, along: 
         move, piece = moves[number], moves[number].piece
         is_in = abs(piece.end - point) <= abs(piece.start - point)
         direction = piece.arriving if is_in else piece.leaving
-        fits = piece.radius - piece.turning * aside > 2 * NEAR and not piece.is_full
+        fits = piece.radius - piece.turning * aside > 2 * NEAR and piece.sweep < math.tau
         if piece.center is None or not (fits and move.feeds and move.is_level) or abs(direction - along) > _SMOOTH_LEAD:
             break
         point, along = (piece.start, piece.leaving) if is_in else (piece.end, piece.arriving)

@@ -49,8 +49,7 @@ def of_section(trace: Trace, moves: Moves, section: int) -> list[Move]:
     for number, values in enumerate(zip(*(column[chosen].tolist() for column in columns), strict=True)):
         row, start, end, center, kind, begin, until, code = values
         turning = _TURNING.get(kind, 0)
-        full = bool(turning) and abs(end - start) <= ZERO
-        piece = Piece(start, end, center if turning else None, turning, full, number)
+        piece = Piece(start, end, center if turning else None, turning, number)
         result.append(Move(row, piece, begin, until, code != Motion.RAPID))
     return result
 
