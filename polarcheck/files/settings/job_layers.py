@@ -184,14 +184,15 @@ def _machine(name: str, folder: Path) -> str:
 
 class PartLayer(Layer):
     """
-    A [[part]] entry of a job file.
+    A [[part]] entry of a job file, or of a table in another file.
 
-    number: its number, from 1.
+    number: its number, from 1. table_key: the key of that table, `feature.contour`; empty for the file itself.
     """
 
-    def __init__(self, written: Written, table: Mapping[str, Any], number: int) -> None:
+    def __init__(self, written: Written, table: Mapping[str, Any], number: int, table_key: str = "") -> None:
         super().__init__(written, {})
         self.number, self._part = number, table
+        self._prefix = f"{table_key}." if table_key else ""
 
     def _resolved(self) -> dict[str, Any]:
         """Return a table with the entry as its only part."""
@@ -202,7 +203,7 @@ class PartLayer(Layer):
 
     def at(self, key: str) -> str:
         """Return the place of a key of the entry, or of the entry itself."""
-        return self.written.at(f"part.{self.number}{key.removeprefix('part')}")
+        return self.written.at(f"{self._prefix}part.{self.number}{key.removeprefix('part')}")
 
 
 class Merged(msgspec.Struct, frozen=True):

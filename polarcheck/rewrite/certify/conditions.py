@@ -45,18 +45,6 @@ class _Within(Layer):
         return self.written.at(f"{self._place}.{key}" if self._place else key)
 
 
-class _PartWithin(PartLayer):
-    """A part of a table of the manifest."""
-
-    def __init__(self, written: Written, table: Mapping[str, Any], number: int, key: str) -> None:
-        super().__init__(written, table, number)
-        self._place = key
-
-    def at(self, key: str) -> str:
-        prefix = f"{self._place}." if self._place else ""
-        return self.written.at(f"{prefix}part.{self.number}{key.removeprefix('part')}")
-
-
 class _CaseFile(JobFile, frozen=True):
     """The layers of a case in the place of those of a job file."""
 
@@ -101,7 +89,7 @@ class ConditionsOfCases:
 
     def _parts(self, table: Mapping[str, Any], key: str) -> Iterator[Layer]:
         for number, part in enumerate(table.get("part", ()), 1):
-            yield _PartWithin(self._written, part, number, key)
+            yield PartLayer(self._written, part, number, key)
 
     def _config(self, written: str, key: str, case: Case) -> Iterator[Layer]:
         """Yield the layers of a job file that apply to the program of a case."""

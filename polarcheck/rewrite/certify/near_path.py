@@ -42,27 +42,19 @@ def with_golden(
     ours, golden = tool_path(our_trace.moves, sense), tool_path(golden_trace.moves, sense)
 
     def turned_by(number: int, mine: ToolPath, theirs: ToolPath) -> tuple[float, str]:
-        ours_at, other_at = float(mine.turned[number]), float(theirs.turned[number])
-        if np.isnan(ours_at) and np.isnan(other_at):
-            return 0.0, ""
-        if np.isnan(ours_at) or np.isnan(other_at):
-            angle, where = (other_at, "there") if np.isnan(ours_at) else (ours_at, "here")
-            return 0.0, f"C at its beginning is known {where} alone, as {angle:.3f} deg"
-        apart = _wrapped(ours_at - other_at)
-        if abs(np.radians(apart)) * mine.farthest > tolerance:
-            return 0.0, f"it is turned by {apart:.3f} deg against {title}"
-        return 0.0, ""
+        angles = {"here": float(mine.turned[number]), "there": float(theirs.turned[number])}
+        alone = [place for place, angle in angles.items() if not np.isnan(angle)]
+        if len(alone) == 1:
+            return 0.0, f"C at its beginning is known {alone[0]} alone, as {angles[alone[0]]:.3f} deg"
+        apart = _wrapped(angles["here"] - angles["there"])
+        is_turned = abs(np.radians(apart)) * mine.farthest > tolerance
+        return 0.0, f"it is turned by {apart:.3f} deg against {title}" if is_turned else ""
 
     if golden_trace.is_old:
         ours, golden = (path[~path.is_still] for path in (ours, golden))
     comparison = _compared(ours, golden, tolerance, title, turned_by)
     if not comparison.reasons and comparison.deviation is not None:
-        for number in range(len(ours.turned)):
-            mine, theirs = ours.of_section(number), golden.of_section(number)
-            change = _feed_change(mine, theirs, tolerance)
-            if change is not None:
-                line, now, before = change
-                comparison.reasons.append(f"line {line}: F is {now}, in {title} {before}")
+        comparison.reasons.extend(_feed_changes(ours, golden, tolerance, title))
     if golden_trace.is_old:
         comparison.reasons.append(f"{title} is of an earlier version, without what stands outside: certify --update")
     elif comparison.deviation is not None or not comparison.reasons:
@@ -212,15 +204,11 @@ def _feed(path: ToolPath, move: int) -> str:
     return "rapid traverse" if path.rapid[move] else "not known" if np.isnan(feed) else f"{feed:g} mm/min"
 
 
-def _feed_change(mine: ToolPath, theirs: ToolPath, tolerance: float) -> tuple[int, str, str] | None:
-    """
-    Return the line of the first move with another F than the golden trace has there, and both F; None without any.
-
-    Both paths are the same.
-    """
-    ours, golden, length = common_pieces(mine, theirs)
-    differs = feed_differs(theirs, golden, mine, ours, EXACT) & (length > 2 * tolerance)
-    if not differs.any():
-        return None
-    first = int(np.argmax(differs))
-    return int(mine.row[ours[first]]), _feed(mine, ours[first]), _feed(theirs, golden[first])
+def _feed_changes(ours: ToolPath, golden: ToolPath, tolerance: float, title: str) -> Iterator[str]:
+    """Yield for each section the first move with another F than the golden trace has there; the paths are the same."""
+    for number in range(len(ours.turned)):
+        mine, theirs = ours.of_section(number), golden.of_section(number)
+        move, golden_move, length = common_pieces(mine, theirs)
+        differs = feed_differs(theirs, golden_move, mine, move, EXACT) & (length > 2 * tolerance)
+        for first, second in zip(move[differs][:1].tolist(), golden_move[differs][:1].tolist(), strict=True):
+            yield f"line {mine.row[first]}: F is {_feed(mine, first)}, in {title} {_feed(theirs, second)}"
