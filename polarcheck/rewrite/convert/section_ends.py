@@ -9,13 +9,13 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from polarcheck.columns.filling import last_row
-from polarcheck.foundation.states import Motion, Side, Units
+from polarcheck.foundation.states import Motion, Units
 from polarcheck.program.machines.machine import Machine
 from polarcheck.rewrite.compare.terms import ANGLE
 from polarcheck.rewrite.convert.block_texts import BlockTexts
 from polarcheck.rewrite.convert.measures import Measures
 from polarcheck.rewrite.convert.new_program import NewProgram
-from polarcheck.rewrite.writing.new_blocks import NewBlock, decision_comment
+from polarcheck.rewrite.writing.new_blocks import NewBlock, decision_comment, plane_behind
 from polarcheck.rewrite.writing.original import Original
 from polarcheck.rewrite.writing.outcome import refused_at
 from polarcheck.rewrite.writing.pen import Pen
@@ -26,7 +26,6 @@ _STEPS = {"X": ("X", "U"), "Z": ("Z", "W")}
 #: A plane that is turned by less is not turned [rad].
 _SAME_DIRECTION = 1e-9
 _ELSEWHERE = "the other control places it at another angle"
-_PLANES = {17: "plane_xy", 18: "plane_zx", 19: "plane_yz"}
 
 
 class SectionEnds:
@@ -137,21 +136,9 @@ class SectionEnds:
         return NewBlock(tuple(self._corner_codes[which][:1]) if is_compensated else ())
 
     def _plane_behind(self, enter: int, leave: int) -> NewBlock:
-        """The plane of before where the section selects one and arcs, cycles or compensation follow outside."""
-        trace, writing = self.trace, self.target.writing
-        planes = {code for key in _PLANES.values() for code in self.target.codes(key)}
-        selects = [any(word in planes for text in texts for word in text.split()) for texts in (
-            (*writing.before, *writing.behind), writing.behind_end
-        )]  # fmt: skip
-        key = _PLANES.get(int(trace.modal.state("plane")[enter - 1]) if enter else 0, "plane_zx")
-        if not selects[0] or selects[1] or not self.target.codes(key):
-            return NewBlock()
-        ends = np.flatnonzero(trace.mode.enters | trace.blocks.starts)
-        following = ends[ends > leave]
-        rows = slice(leave + 1, int(following[0]) if len(following) else len(trace))
-        needs = np.isin(trace.axes.motion[rows], (Motion.CW, Motion.CCW)) | trace.modal.in_cycle[rows]
-        needs |= trace.compensation.side[rows] != Side.OFF
-        return NewBlock((self.target.codes(key)[0],)) if needs.any() else NewBlock()
+        """The plane of before where the section selects another one and arcs, cycles or compensation follow outside."""
+        key = plane_behind(self.trace, enter - 1, leave, self.target)
+        return NewBlock((self.target.codes(key)[0],) if key else ())
 
     # ---- around ----
 

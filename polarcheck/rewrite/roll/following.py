@@ -14,8 +14,8 @@ class Following:
     """
     The rows of a program by what they contain, in order.
 
-    moves, turns, on_plane, at_feed, arcs: rows that move; that move C; X or C; at feed; along an arc or in a cycle.
-    motion, plane, feed_mode: rows with a code of that group.
+    moves, turns, on_plane, at_feed: rows that move; that move C; X or C; at feed.
+    motion, feed_mode: rows with a code of that group.
     feed: rows with F.
     jump_targets: True for a row with an N word whose number stands in a statement, or beside P or Q.
     """
@@ -24,22 +24,18 @@ class Following:
         axes, modal, blocks = trace.axes, trace.modal, trace.blocks
         rotary = trace.machine.polar.rotary_words
         moves = axes.motion != Motion.NONE
-        arcs = (axes.motion == Motion.CW) | (axes.motion == Motion.CCW) | (axes.motion == Motion.CYCLE)
         self._count = len(trace)
         self._starts = np.flatnonzero(blocks.starts)
-        self.moves, self.turns, self.on_plane, self.at_feed, self.arcs = (
+        self.moves, self.turns, self.on_plane, self.at_feed = (
             np.flatnonzero(mask)
             for mask in (
                 moves,
                 moves & blocks.has(*rotary),
                 moves & blocks.has("X", "U", *rotary),
                 moves & (axes.motion != Motion.RAPID),
-                arcs,
             )
         )
-        self.motion, self.plane, self.feed_mode = (
-            np.flatnonzero(modal.sets(group)) for group in ("motion", "plane", "feed_mode")
-        )
+        self.motion, self.feed_mode = (np.flatnonzero(modal.sets(group)) for group in ("motion", "feed_mode"))
         self.feed = np.flatnonzero(blocks.has("F"))
         self.jump_targets = _jump_targets(trace)
 

@@ -9,14 +9,14 @@ import numpy as np
 
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import stretch
-from polarcheck.foundation.states import FEED_MODES, MM_PER_INCH, STATES, FeedMode, Motion
+from polarcheck.foundation.states import FEED_MODES, MM_PER_INCH, FeedMode, Motion
 from polarcheck.program.machines.code_tables import code_set
 from polarcheck.rewrite.roll.entries import Entry
 from polarcheck.rewrite.roll.following import Following
 from polarcheck.rewrite.roll.rollable import Stretch
 from polarcheck.rewrite.roll.rolled_elements import Element
 from polarcheck.rewrite.roll.ways import AxisMoves
-from polarcheck.rewrite.writing.new_blocks import NewBlock
+from polarcheck.rewrite.writing.new_blocks import NewBlock, plane_behind
 from polarcheck.rewrite.writing.pen import Pen, pen_at
 from polarcheck.rewrite.writing.style import Style
 from polarcheck.rules.editing import is_plain
@@ -35,7 +35,8 @@ def restored(trace: Trace, following: Following, last: int, pen: Pen, *, is_line
     takes_motion = not is_line and following.takes_over(last, following.moves, following.motion)
     on_plane = following.behind(last, following.on_plane)
     writes_x = on_plane == len(trace) or (trace.blocks.has("X")[on_plane] and not trace.modal.is_step("X")[on_plane])
-    words = _plane(trace, following, last, pen)
+    plane = plane_behind(trace, last, last, trace.machine)
+    words = [pen.numbers.code_for(plane)] if plane else []
     if mode != FeedMode.PER_MINUTE and following.takes_over(last, following.at_feed, following.feed_mode):
         words.append(pen.numbers.code_for(FEED_MODES[mode]))
     if takes_motion or not writes_x:
@@ -50,20 +51,6 @@ def restored(trace: Trace, following: Following, last: int, pen: Pen, *, is_line
             feed = feed / float(trace.lengths.feed_scale[last]) * (MM_PER_INCH if pen.numbers.feed_inch else 1.0)
         words.append("F" + pen.numbers.feed(feed))
     return [NewBlock(tuple(words))] if words else []
-
-
-def _plane(trace: Trace, following: Following, last: int, pen: Pen) -> list[str]:
-    """The code of the plane that was in force, where the section leaves another one and arcs follow."""
-    machine, writing = trace.machine, trace.machine.writing
-    planes = {code: key for key in STATES["plane"] for code in machine.codes(key)}
-    blocks = (*writing.before, writing.switch, *writing.behind, writing.end, *writing.behind_end)
-    after = [planes[word] for block in blocks for word in block.split() if word in planes]
-    state = int(trace.modal.state("plane")[last])
-    # Lathes begin in the plane of X and Z.
-    before = planes.get(f"G{state}", "plane_zx")
-    if not after or after[-1] == before or not following.takes_over(last, following.arcs, following.plane):
-        return []
-    return [pen.numbers.code_for(before)]
 
 
 #: F of the turn back is so much of what C allows.

@@ -13,6 +13,7 @@ import numpy as np
 from polarcheck.checking.edits import applied, origins
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import stretch
+from polarcheck.foundation.states import STATES, Motion, Side
 from polarcheck.program.machines.machine import Machine
 from polarcheck.program.reading import source
 from polarcheck.program.reading.words import Text
@@ -44,6 +45,7 @@ class NewBlock(msgspec.Struct, frozen=True):
 #: The index of a block in text.blocks -> what stands in its place: no block takes it out with its line.
 NewBlocks = Mapping[int, Sequence[NewBlock]]
 
+_PLANES = {17: "plane_xy", 18: "plane_zx", 19: "plane_yz"}
 _BLANK_OR_END = " \t\r\n\0\x7f"
 #: Block skip, N word and O word stay at the head of a block that is rewritten.
 _HEAD = re.compile(r"(?:[ \t]*(?:/[1-9]?|[NO:][ \t]*[0-9]+))*", re.IGNORECASE)
@@ -156,6 +158,24 @@ def next_move_in_motion(trace: Trace, row: int) -> int | None:
         if trace.axes.moves[following]:
             return following
     return None
+
+
+def plane_behind(trace: Trace, row: int, last: int, target: Machine) -> str:
+    """
+    Return the list of the plane in force in a row, where the switches of a section of `target` leave another one and
+    an arc, a cycle or compensation takes it over behind a row `last`; empty otherwise. Lathes begin in X and Z.
+    """
+    writing, planes = target.writing, {code: key for key in STATES["plane"] for code in target.codes(key)}
+    switches = (*writing.before, writing.switch, *writing.behind, writing.end, *writing.behind_end)
+    after = [planes[word] for block in switches for word in block.split() if word in planes]
+    key = _PLANES.get(int(trace.modal.state("plane")[row]) if row >= 0 else 0, "plane_zx")
+    if not after or after[-1] == key or key not in planes.values():
+        return ""
+    takes = np.isin(trace.axes.motion, (Motion.CW, Motion.CCW, Motion.CYCLE)) | trace.modal.in_cycle
+    takes |= trace.compensation.side != Side.OFF
+    ends = trace.modal.sets("plane") | trace.blocks.starts | trace.mode.enters
+    following = last + 1 + np.flatnonzero((takes | ends)[last + 1 :])[:1]
+    return key if (~ends[following]).any() else ""
 
 
 def edits_of_signs(original: Original, machine: Machine) -> list[Replace]:
