@@ -706,3 +706,19 @@ def test_block_skip_is_that_of_the_golden_trace(control: str, tmp_path: Path) ->
         text = sound.replace("/M8\n/M9", new.replace("(ON)", "; ON") if control == "siemens-transmit" else new)
         assert compared(tmp_path, control, sound, text).exit_code == code
         assert certified(tmp_path, control, sound, text).exit_code == code
+
+
+@looped("control", ["fanuc-30i", "haas-lathe", "gsk-988", "fagor-8055t"])
+def test_the_order_of_axes_from_where_they_are_not_known_is_no_difference(control: str, tmp_path: Path) -> None:
+    if control == "fagor-8055t":
+        text = PROGRAMS["okuma-osp"].partition("G42")[2].partition("/Z2")[0].replace("Y", "C")
+        head = "%1/G90 G40 G71 G94/T1 D1/G97 S0 M5/G15/M45 S3000/G0 X60 Z2 C0/G16 XC/G1 X28 F1000/Z-4 F200/G42"
+        sound = f"{head}{text}/Z2 F1000/G16/G18/G0 X100 Z50/M30/".replace("/", "\n")
+    else:
+        sound = program(control)
+    (first,) = [line for line in sound.splitlines() if line.startswith("G0 X60")]
+    x, z, c = first.removeprefix("G0 ").split()
+    for words, code in ((f"G0 {z}\n{x} {c}", 0), (f"G0 {c}\n{x}\n{z}", 0), (f"G0 X70.\n{first}", 1)):
+        text = sound.replace(first, words)
+        assert compared(tmp_path, control, sound, text).exit_code == code
+        assert certified(tmp_path, control, sound, text).exit_code == code

@@ -18,6 +18,7 @@ from polarcheck.foundation import bounded
 from polarcheck.foundation.decoding import json_decoder
 from polarcheck.foundation.errors import CertificateError
 from polarcheck.foundation.states import Motion
+from polarcheck.geometry.tolerances import ZERO
 from polarcheck.program.reading import files
 from polarcheck.reports.pages import executed
 from polarcheck.reports.pages.executed import Move
@@ -153,7 +154,12 @@ def _moves_outside(trace: Trace) -> Iterator[Step]:
     path, lines = stretch.path, trace.blocks.line_in_file[stretch.path.row].tolist()
     places = zip(path.end.imag.tolist(), path.end.real.tolist(), (path.z_end / stretch.c_scale).tolist(), strict=True)
     motions = trace.axes.motion[path.row].tolist()
+    # Of rapid traverse from where it is not known only the last end shows in a path.
+    is_still = path.rapid & (np.abs(path.end - path.start) <= ZERO) & (np.abs(path.z_end - path.z_start) <= ZERO)
+    is_seen = ~is_still | np.append(~is_still[1:], True)[: len(path)]
     for index, (row, line, place) in enumerate(zip(path.row.tolist(), lines, places, strict=True)):
+        if not is_seen[index]:
+            continue
         tokens, values = ["X", "Z", "C"], [*place]
         if not path.rapid[index]:
             tokens.append(f"F{feed_unit(int(path.feed_mode[index]))}")
