@@ -489,6 +489,8 @@ SMALL = [
     [
         (CROSSED, "G42 X36.792 C11.863 F200", "G42 X16.792 C11.863 F200", "X36.792"),
         (HEXAGON_CROSSED, "X32. C-9.238", "X33. C-9.238", "X32."),
+        (HEXAGON_CROSSED, "G42 X42.392 C6.238 F180", "G42 X42.392 C.238 F180", "C6.238"),
+        (HEXAGON_CROSSED, "G42 X42.392 C6.238 F180", "G42 X24.392 C6.238 F180", "X42.392"),
         # No size without a point is taken for another one that is within its last digit.
         (SMALL, "X-35. C-20.", "X-35. C-220.", "C-20."),
     ],

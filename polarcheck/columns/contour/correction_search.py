@@ -14,7 +14,7 @@ from polarcheck.columns.contour.likely_edits import AS_LIKELY, Likely, all_compa
 from polarcheck.columns.contour.plane_loops import PlaneLoop
 from polarcheck.columns.contour.written_loop import AxisWords, WrittenLoop, written_loop
 from polarcheck.columns.trace import Trace
-from polarcheck.columns.words.slips import WORD, Slip, plain_number, slips_of
+from polarcheck.columns.words.slips import WORD, Slip, plain_number, slip_of, slips_of
 from polarcheck.foundation.arrays import Mask, Points, Rows, cached_property
 from polarcheck.geometry.regularity.symmetric_corners import each_once, is_lonely, missing_places, regular_polygons
 from polarcheck.geometry.regularity.symmetry import Symmetry
@@ -257,6 +257,7 @@ class _Search:
                 odd = ring.corner[is_lonely(ring.corner, polygon, tolerance)]
                 if len(place) != 1 or len(odd) != 1:
                     continue
+                yield from self._of_crossed_leads(complex(place[0]), complex(odd[0]))
                 for corner in np.flatnonzero(np.abs(point - odd[0]) <= tolerance).tolist():
                     away = [(complex(place[0] - point[corner]) / axis.direction).real for axis in axes]
                     words = [
@@ -266,6 +267,28 @@ class _Search:
                     ]
                     if all(word >= 0 and not axis.is_step[corner] for axis, word, _ in words):
                         yield self._elsewhere(corner, complex(place[0]), words)
+
+    def _of_crossed_leads(self, place: complex, odd: complex) -> Iterator[_Trial]:
+        """The outer ends of the first and the last line, of which one crosses the other elsewhere than at a place."""
+        point = self.loop.point
+        if (np.abs(point - odd) <= self.tolerance).any():
+            return
+        last = len(point) - 1
+        for corner, inner in ((0, 1), (last, last - 1)):
+            side = place - complex(point[inner])
+            for axis in self._axes:
+                across = (axis.direction.conjugate() * side).imag
+                word = int(axis.word[corner])
+                if word < 0 or axis.is_step[corner] or abs(across) <= _STRAIGHT * abs(side):
+                    continue
+                shift = (complex(point[inner] - point[corner]).conjugate() * side).imag / across
+                needed = float(self.trace.run.words.value[word]) + shift / axis.scale[corner]
+                written = WORD.fullmatch("".join(self.trace.run.written(word).split()))
+                slip = written and slip_of(written[2], needed, self.tolerance / axis.scale[corner])
+                if written and slip:
+                    moved = point.copy()
+                    moved[corner] += shift * axis.direction
+                    yield _Trial(corner, word, slip._replace(text=written[1] + slip.text), moved, self.loop)
 
     def of_two_corners(self) -> tuple[Correction, ...]:
         """The two words, each a slip of the pen, whose corners are off the regular polygon of all the others."""
