@@ -42,6 +42,7 @@ class PolarMode(Columns, frozen=True):
         rapid_stands = "G0" in polar.allowed_codes and polar.virtual_axis != polar.rotary_address
         in_rapid = (self.axes.motion == Motion.RAPID) & self.axes.programs_virtual_axis & rapid_stands
         changes_tool = self.tools.changes_tool | self.blocks.codes(*m_codes.tool_change)
+        is_circle = is_among(self.axes.motion, (Motion.CW, Motion.CCW)) & self.axes.moves_plane & ~self.axes.programs_z
         marks = Marks(
             on=self.axes.switches_on & ~self.axes.ends_mode,
             off=self.axes.ends_mode,
@@ -53,7 +54,7 @@ class PolarMode(Columns, frozen=True):
             tools_in_mode=changes_tool & self._takes_tools,
             stops=self.blocks.codes(*m_codes.optional_stop),
             rapid=self.blocks.listed("rapid"),
-            cuts=cutting & self.axes.programs_virtual_axis,
+            cuts=cutting & self.axes.programs_virtual_axis | is_circle,
             moves=(cutting | in_rapid) & self.axes.moves_plane,
             returns=self._returns | self.blocks.is_unknown("G"),
             broken_off=np.zeros(len(self.run), bool) if self.run.broken_off is None else self.run.broken_off,

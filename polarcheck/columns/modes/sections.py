@@ -16,9 +16,9 @@ class Marks(msgspec.Struct, frozen=True):
     return). planes: a plane is selected that cannot be selected in the mode. tool_ends: tool change, program end.
     tools_in_mode: tool changes that can stand in the mode as well, of a section that its G13.1 ends.
     stops: M1, between two tools or in the work of one. rapid: G0 is written. cuts: a cutting move with a word of the
-    virtual axis. moves: any move in the plane that can stand in the mode. returns: M99 of a program that something
-    elsewhere may call, or what may be G13.1. broken_off: the last row of a program that a bound has ended.
-    rapid_stands: G0 can stand in the mode, whose axes have addresses of their own.
+    virtual axis, or an arc without Z. moves: any move in the plane that can stand in the mode. returns: M99 of a
+    program that something elsewhere may call, or what may be G13.1. broken_off: the last row of a program that a bound
+    has ended. rapid_stands: G0 can stand in the mode, whose axes have addresses of their own.
     """
 
     on: Mask
@@ -101,7 +101,10 @@ def find_sections(marks: Marks) -> Sections:
     forgotten = ((by_off | by_bound) & (np.minimum(tool_end, stop) < end)) | by_end
     forgotten |= by_on & (np.minimum(rapid, plane) < end)
     limit = np.minimum(np.minimum(np.where(by_on, rapid, outside), plane), end)
+    # Where G0 cannot stand in the mode, what follows it without the second axis is turned.
     last_move = np.maximum(enter, _last_before(np.flatnonzero(marks.moves), limit))
+    if not marks.rapid_stands:
+        last_move = np.where(last_cut > enter, last_cut, last_move)
     repeated = np.zeros(len(enter), bool)
     repeated[1:] = (by_on & ~forgotten)[:-1]
     final = np.append(np.flatnonzero(~repeated)[1:] - 1, len(enter) - 1)

@@ -338,19 +338,25 @@ def _without_others(marks: _Marks) -> tuple[_Marks, Positions, Mask, Positions]:
     """
     Remove characters that are part of no word: strays, and signs of macro statements.
 
-    A comma between two digits is a stray that is read as the decimal point for which it stands.
+    A comma between two digits is a stray that is read as the decimal point for which it stands. So is one at the end of
+    a number, where there are fewer points.
     """
     code, kind, start = marks.code, marks.kind.copy(), marks.start.copy()
     index = np.flatnonzero(kind > Character.COMMA)
     before, follower = kind[index - 1], code[index + 1]
     kind[index[(code[index] == _COLON) & (before == Character.BREAK)]] = Character.LETTER  # stands for O
     kind[index[(code[index] == _STAR) & (kind[index + 1] == Character.BREAK)]] = Character.STRAY
-    commas = index[(code[index] == _COMMA) & is_among(follower, list(b"CRAcra"))]
+    behind_digit = (code[index] == _COMMA) & (before == Character.DIGIT)
+    is_decimal = behind_digit & (kind[index + 1] == Character.DIGIT)
+    is_corner = (code[index] == _COMMA) & is_among(follower, list(b"CRAcra"))
+    if np.count_nonzero(behind_digit & ~is_corner) > np.count_nonzero(kind == Character.POINT):
+        is_decimal = behind_digit
+    commas = index[is_corner & ~is_decimal]
     kind[commas] = Character.COMMA
     start[commas + 1] = marks.at[commas]
     strays = np.flatnonzero(kind == Character.STRAY)
     is_last = kind[strays + 1] == Character.BREAK
-    points = index[(code[index] == _COMMA) & (before == Character.DIGIT) & (kind[index + 1] == Character.DIGIT)]
+    points = index[is_decimal]
     if len(points):
         code = code.copy()
         code[points], kind[points] = _POINT, Character.POINT

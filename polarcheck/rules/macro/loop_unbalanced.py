@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     over="faults",
     once="structure",
     subject="word",
+    # A program that has lost its end has lost that of the loop with it.
+    follows={"program": ("program-end-missing",)},
 )
 def loop_unbalanced(faults: Faults) -> Mask:
     """

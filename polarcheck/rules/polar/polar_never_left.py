@@ -2,14 +2,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from polarcheck.rules.rule import ERROR, rule
+from polarcheck.rules.rule import ERROR, Hits, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.metal.bar import Bar
     from polarcheck.columns.modes.executed_blocks import ExecutedBlocks
     from polarcheck.columns.modes.mode import PolarMode
     from polarcheck.columns.trace import Trace
-    from polarcheck.foundation.arrays import Mask
     from polarcheck.rules.hit import Details, Hit
 
 #: Of a block that is named; more is cut off [characters].
@@ -23,8 +22,9 @@ _BLOCK_LENGTH = 60
     over="sections",
     at=("on",),
     subject="mode",
+    follows={"program": ("program-end-missing",)},
 )
-def polar_never_left(mode: PolarMode) -> Mask:
+def polar_never_left(blocks: ExecutedBlocks, mode: PolarMode) -> Hits:
     """
     Polar mode still on at the tool change or the end of the program.
 
@@ -74,7 +74,11 @@ def polar_never_left(mode: PolarMode) -> Mask:
         G28 U0
         M30
     """
-    return ~mode.sections.left
+    import numpy as np
+
+    # A program that has lost its end has lost this code with it.
+    leave = mode.sections.leave
+    return Hits(~mode.sections.left, follows={"program": np.append(blocks.starts, True)[leave]})
 
 
 def details(hit: Hit, blocks: ExecutedBlocks, mode: PolarMode, upright: Trace, bar: Bar) -> Details:
