@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import SupportsIndex
+
 from polarcheck.columns.feed.feedrate import Feedrate
 from polarcheck.columns.modes.executed_blocks import ExecutedBlocks
 from polarcheck.columns.modes.modal import ModalStates
@@ -60,3 +62,7 @@ class Trace(Columns, frozen=True):
 
     def __len__(self) -> int:
         return len(self.run)
+
+    def line(self, row: SupportsIndex) -> int:
+        """Return the line of a row in the file, from 1."""
+        return int(self.blocks.line_in_file[row])

@@ -111,7 +111,7 @@ def orders_of(trace: Trace) -> Iterator[GoldenOrder]:
             at=[rounded(point.real), rounded(point.imag), rounded(z)] if section >= 0 else UNSET,
             before=UNSET if section >= 0 else begun,
             channel=channel or UNSET,
-            line=int(trace.blocks.line_in_file[step.row]),
+            line=trace.line(step.row),
         )
 
 

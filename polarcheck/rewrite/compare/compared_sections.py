@@ -18,9 +18,9 @@ from polarcheck.geometry import polar
 from polarcheck.geometry.plane_path import SpacePath
 from polarcheck.rewrite.compare.orders import Step, feed_step, special_rows
 from polarcheck.rewrite.compare.terms import Terms
+from polarcheck.rewrite.writing.outcome import radius_not_known
 from polarcheck.rules.quantity import Quantity, in_row
 from polarcheck.rules.repair import FEED, WAY, Z
-from polarcheck.rules.wording.offsets import called_tool, to_give
 
 #: Angles less than this below a full turn count as 0 [deg].
 _NEAR_TURN = 0.01
@@ -76,7 +76,7 @@ class Stretch(msgspec.Struct, frozen=True):
 
     def line(self, row: int) -> int:
         """Return the line of a row in the file."""
-        return int(self.trace.blocks.line_in_file[row])
+        return self.trace.line(row)
 
     def quantity(self, value: float, row: int) -> Quantity:
         """Return a value of a row in the units of its program."""
@@ -113,13 +113,12 @@ def of_sections(trace: Trace, tool_center: ToolCenter, steps: Sequence[Step], te
         needs = as_programmed = ""
         if len(missing):
             row = int(missing[0])
-            missing_radius = f"R of {called_tool(trace.tools, row)} is not known"
-            as_programmed = f"{missing_radius}: {to_give(trace.tools, trace.machine, row, 'radius')}"
+            as_programmed = radius_not_known(trace, row)
             low, high = np.searchsorted(plain.section, (number, number + 1)).tolist()
             moves = plain[low:high]
         turned, knows_z = _turned(trace, moves, number)
         if not turned.is_known.all():
-            line = int(trace.blocks.line_in_file[moves.row[np.argmin(turned.is_known)]])
+            line = trace.line(moves.row[np.argmin(turned.is_known)])
             needs = f"a position of line {line} is not known"
         path = _with_feeds(trace, turned, moves.row, terms, in_section=True)
         if terms.is_rewritten:
@@ -211,7 +210,7 @@ def outside(trace: Trace, steps: Sequence[Step], rows: Rows, terms: Terms) -> St
             ]
             lost[by_distance] = False
         if lost.any() and not needs:
-            needs = f"{words[0]} of line {int(trace.blocks.line_in_file[row[np.argmax(lost)]])} is not known"
+            needs = f"{words[0]} of line {trace.line(row[np.argmax(lost)])} is not known"
     if terms.is_rewritten and len(rows):
         positions = [column[rows[0]] for column in earlier]
         named = [trace.blocks.has(*words)[row] for words in written]
@@ -259,7 +258,7 @@ def _distance(trace: Trace, words: tuple[str, str]) -> Floats:
 def _step_by(trace: Trace, word: str, row: int, distance: float) -> Step:
     """Return a distance from a position that is not known as an order."""
     text = f"{word}{distance:.10g} from where it is not known"
-    return Step(row, int(trace.blocks.line_in_file[row]), (f"{word} from an unknown position",), (distance,), text)
+    return Step(row, trace.line(row), (f"{word} from an unknown position",), (distance,), text)
 
 
 def _direction_behind(trace: Trace, row: int) -> float:

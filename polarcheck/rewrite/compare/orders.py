@@ -72,7 +72,7 @@ def speed_in_force(trace: Trace) -> Floats:
 def feed_step(trace: Trace, row: int) -> Step:
     """Return the F of a move at feed as an order."""
     unit, feed = feed_unit(int(trace.feedrate.feed_mode[row])), float(trace.feedrate.feed_number[row])
-    return Step(row, int(trace.blocks.line_in_file[row]), (f"F{unit}",), (feed,), f"F{feed:g}{unit} of a first move")
+    return Step(row, trace.line(row), (f"F{unit}",), (feed,), f"F{feed:g}{unit} of a first move")
 
 
 def feed_unit(feed_mode: int) -> str:
@@ -220,7 +220,7 @@ class _Reader:
         text = " ".join(part[2] for part in parts)
         # A block is executed whole, in whatever order its addresses stand; of two codes of a group the last one counts.
         tokens, values, _ = zip(*sorted(parts, key=lambda part: part[0][0]), strict=True)
-        line = int(self._trace.blocks.line_in_file[row])
+        line = self._trace.line(row)
         return Step(row, line, tokens, tuple(value for value in values if value is not None), text)
 
     def _part(self, row: int, index: int) -> tuple[str, float | None, str] | None:

@@ -17,10 +17,10 @@ from polarcheck.rewrite.compensate.compensated_blocks import Stroke, Strokes, ne
 from polarcheck.rewrite.compensate.section_moves import Move, of_section
 from polarcheck.rewrite.writing.new_blocks import NewBlock, edit_before, edits_of, with_edits
 from polarcheck.rewrite.writing.original import Original
-from polarcheck.rewrite.writing.outcome import Figure, Outcome, RefusedError, refusal_at, refused_at
+from polarcheck.rewrite.writing.outcome import Figure, Outcome, RefusedError, radius_not_known, refusal_at, refused_at
 from polarcheck.rewrite.writing.reading_back import read_back_on_part, require_equal
 from polarcheck.rewrite.writing.style_of import style_of
-from polarcheck.rules.wording.offsets import called_tool, to_give
+from polarcheck.rules.wording.offsets import called_tool
 
 #: The most by which rounding and chords may shift the path, in least increments.
 _INCREMENTS = 1.5
@@ -69,8 +69,7 @@ def _require_path(trace: Trace, tool_center: ToolCenter, compensated: Mask) -> N
     unknown = np.flatnonzero(trace.compensation.compensates & trace.path.travels & np.isnan(trace.compensation.radius))
     if len(unknown):
         row = int(unknown[0])
-        missing = to_give(trace.tools, trace.machine, row, "radius")
-        raise refused_at(trace, row, f"R of {called_tool(trace.tools, row)} is not known: {missing}")
+        raise refused_at(trace, row, radius_not_known(trace, row))
     objections = {
         "the tool does not fit into this arc": tool_center.inside_arc_too_small,
         "the tool center would run against the program": tool_center.interferes,

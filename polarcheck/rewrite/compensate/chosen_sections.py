@@ -13,7 +13,7 @@ from polarcheck.foundation.states import ArcFeed, Side
 from polarcheck.geometry.tolerances import ADJUSTMENT, ROUNDING
 from polarcheck.program.machines.code_lists import expanded
 from polarcheck.rewrite.compensate.section_moves import Move, of_section
-from polarcheck.rewrite.writing.outcome import Refusal, RefusedError, refusal_at, refused_at
+from polarcheck.rewrite.writing.outcome import Refusal, RefusedError, radius_not_known, refusal_at, refused_at
 from polarcheck.rules.wording.offsets import called_tool, example, to_give
 
 
@@ -113,8 +113,7 @@ def _radius(trace: Trace, section: int) -> float:
     radius = np.unique(trace.offsets.radius_of_offset[rows])
     tool = called_tool(trace.tools, row)
     if np.isnan(radius).any():
-        missing = to_give(trace.tools, trace.machine, row, "radius")
-        raise refused_at(trace, row, f"R of {tool} is not known: {missing}")
+        raise refused_at(trace, row, radius_not_known(trace, row))
     if len(radius) > 1:
         raise refused_at(trace, row, "another tool offset is called in the section")
     if radius[0] <= ADJUSTMENT + ROUNDING:

@@ -92,7 +92,7 @@ class _Writer:
         steps = self._steps(first)
         new: dict[int, list[NewBlock]] = {}
         for row in group:
-            pen.numbers.line = int(self.trace.blocks.line_in_file[row])
+            pen.numbers.line = self.trace.line(row)
             self._require_plain(row)
             moves: list[NewBlock] = []
             for stroke in strokes[row]:

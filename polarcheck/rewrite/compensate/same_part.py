@@ -80,7 +80,7 @@ def require_same_part(
         apart, row = now.farthest_from(swept, number)
         path = max(path, apart)
         if apart > _AT_CORNERS * own_radius + tolerance:
-            line = origin[int(result.new.trace.blocks.line_in_file[row]) - 1]
+            line = origin[result.new.trace.line(row) - 1]
             text = f"the tool center would leave its path by {apart:.4f} mm, which no corner explains"
             raise RefusedError([Refusal(line, text)])
     return [

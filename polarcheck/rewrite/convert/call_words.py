@@ -62,7 +62,7 @@ class Calls:
         if self.calls_foreign_macro[row] or (not self.names(text) and not self.is_flow[row]):
             return None
         squeezed = _BLANKS.sub("", text).upper()
-        line = int(self.trace.blocks.line_in_file[row])
+        line = self.trace.line(row)
         if not self.is_same and squeezed == self._return and not int(self.trace.run.depth[row]):
             reason = f"{text}: how {self.target.title} begins the main program again is not known"
             raise refused_at(self.trace, row, reason)

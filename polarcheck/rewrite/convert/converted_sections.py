@@ -94,7 +94,7 @@ class _Writer:
             self._put(row, [])
         targets = self._targets(rows)
         for row in rows:
-            pen.numbers.line = self._line(row)
+            pen.numbers.line = self.trace.line(row)
             if int(self.trace.run.block[row]) in targets:
                 pen.forget()
             self._put(row, self._row(row, enter, leave, pen, turn))
@@ -153,7 +153,7 @@ class _Writer:
         if translated.whole and (self.has_axes[row] or self.trace.axes.moves[row]):
             text = f"{content}: {translated.whole}, and the contour in the mode cannot go on without it"
             raise refused_at(self.trace, row, text)
-        return self.new.comment(self._line(row), content, translated)
+        return self.new.comment(self.trace.line(row), content, translated)
 
     def _moves(self, row: int, pen: Pen, turn: complex, codes: Sequence[str]) -> list[NewBlock]:
         """The moves of a row; none where nothing moves."""
@@ -263,9 +263,6 @@ class _Writer:
         if self.divided_rows:
             notes.append(f"{_count(self.divided_rows, 'arc')} divided, as the machine takes them")
         return notes
-
-    def _line(self, row: int) -> int:
-        return int(self.trace.blocks.line_in_file[row])
 
 
 def _without_empty(*blocks: NewBlock) -> list[NewBlock]:

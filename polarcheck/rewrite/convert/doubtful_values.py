@@ -63,11 +63,11 @@ def doubts(basis: Basis, trace: Trace, source: Settings, target: Settings) -> It
             if key in settings.doubtful and not is_written
         ]
         if ours != theirs and of:
-            yield Doubt(int(trace.blocks.line_in_file[row]), key, _shown(ours), _shown(theirs), of)
+            yield Doubt(trace.line(row), key, _shown(ours), _shown(theirs), of)
     named = np.flatnonzero(trace.blocks.has("Z", "W"))
     ours, theirs = z_into_part(trace), target.machine.control.z_into_part or "minus"
     if len(named) and ours and ours != theirs:
-        line = int(trace.blocks.line_in_file[named[0]])
+        line = trace.line(named[0])
         yield Doubt(line, SENSE_OF_Z, ours, theirs, [source.machine.title, target.machine.title])
 
 

@@ -68,7 +68,7 @@ class SectionEnds:
         if abs(angle) < _SAME_DIRECTION:
             return 1.0 + 0j
         self.new.notes.append(
-            f"line {self._line(enter)}: the plane is turned by {math.degrees(angle):.3f} deg: {_ELSEWHERE}"
+            f"line {self.trace.line(enter)}: the plane is turned by {math.degrees(angle):.3f} deg: {_ELSEWHERE}"
         )
         self.measures.basis.add("polar.zero_angle", enter)
         return cmath.exp(1j * angle)
@@ -126,7 +126,7 @@ class SectionEnds:
             raise refused_at(trace, enter, f"{text}: position C there by G0 before it")
         axis = target.polar.rotary_address + pen.numbers.angle(angle * self._same_sense)
         text += f": {axis} turns C there before the mode begins, where the tool must be clear"
-        self.new.decide(self._line(enter), text)
+        self.new.decide(self.trace.line(enter), text)
         return NewBlock((pen.numbers.code("G0"), axis), decision_comment(text))
 
     def _corners(self, row: int, which: int) -> NewBlock:
@@ -186,6 +186,3 @@ class SectionEnds:
             return []
         word = "F" + pen.numbers.feed(float(feed[row]))
         return [NewBlock((word,))] if word != pen.feed_word else []
-
-    def _line(self, row: int) -> int:
-        return int(self.trace.blocks.line_in_file[row])

@@ -212,7 +212,7 @@ class Translation:
         is_g, written = self.measures.letter_of(index) == "G", self.measures.written(index)
         meaning = self._codes.of_g(row, index) if is_g else self._codes.of_m(row, index)
         if not is_g and bool(self.roles.of_live_tool[row]) and meaning.key.startswith("live_tool"):
-            self.left_out.add(int(self.trace.blocks.line_in_file[row]))
+            self.left_out.add(self.trace.line(row))
         if meaning.words and meaning.key in ("live_tool_on", "spindle_on"):
             self._add_speed(row, meaning.key == "live_tool_on", result)
         result.words += meaning.words
@@ -230,7 +230,7 @@ class Translation:
         """Write the speed that is in force where a spindle starts without one."""
         if word := self._speeds.in_force(row, is_live):
             result.words.append(word)
-            self.added_speeds.add(int(self.trace.blocks.line_in_file[row]))
+            self.added_speeds.add(self.trace.line(row))
 
     def _tool(self, row: int, index: int, result: Translated) -> None:
         if self.tools.is_same:
@@ -258,6 +258,6 @@ class Translation:
         result.words.append(f"F{text}")
 
     def _note(self, row: int, text: str) -> None:
-        line = int(self.trace.blocks.line_in_file[row])
+        line = self.trace.line(row)
         self.notes.setdefault(text, line)
         self.left_out.add(line)

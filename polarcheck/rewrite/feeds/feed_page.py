@@ -149,7 +149,7 @@ def curve(tables: Tables) -> Iterator[tuple[str | int | float | None, ...]]:
         yield (
             rounded(points.time[index]),
             int(trace.mode.section[row]),
-            int(trace.blocks.line_in_file[row]),
+            trace.line(row),
             rounded(trace.feedrate.programmed_feed[row]),
             rounded(points.feed[index]),
             rounded(lowest[row]),

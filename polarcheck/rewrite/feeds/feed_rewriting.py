@@ -87,7 +87,7 @@ class _Plan:
             if not fixed:
                 replacements = {edit for edit in edits.values() if edit is not None}
                 return FeedWords(tuple(sorted(replacements)), tuple(sorted(self.lowest)), tuple(sorted(unchanged)))
-            unchanged |= {int(trace.blocks.line_in_file[row]) for row in fixed}
+            unchanged |= {trace.line(row) for row in fixed}
             self.moving &= ~np.isin(block, block[fixed])
         raise TooHardError("F of too many blocks hangs on that of others")
 
@@ -115,7 +115,7 @@ class _Plan:
         for block in blocks.tolist():
             rows = np.flatnonzero((self.trace.run.block == block) & self.moving)
             self.wanted[rows] = np.nanmin(self.wanted[rows])
-            self.lowest.add(int(self.trace.blocks.line_in_file[rows[0]]))
+            self.lowest.add(self.trace.line(rows[0]))
 
     def _edit(self, row: int) -> Replace | None:
         trace = self.trace

@@ -225,7 +225,7 @@ class _Columns:
         several &= ~np.isnan(feed) & ~np.isnan(self.highest[worst])
         return [
             FeedRow(
-                line=int(trace.blocks.line_in_file[trace.feedrate.feed_row[row]]),
+                line=trace.line(trace.feedrate.feed_row[row]),
                 block=_text(trace, int(trace.feedrate.feed_row[row])),
                 section=int(trace.mode.section[row]),
                 runs=int(runs[index] - corners[index]),
@@ -270,11 +270,10 @@ class _Columns:
 def _total(trace: Trace, times: Times, row: int, cutting: tuple[float, ...], one_feed: float) -> FeedTotal:
     today, best, slow = cutting
     return FeedTotal(
-        line=int(trace.blocks.line_in_file[row]) if len(trace) else 1,
+        line=trace.line(row) if len(trace) else 1,
         time=round(times.known, 6),
         unknown=[
-            Unknown(reason=reason, blocks=count, line=int(trace.blocks.line_in_file[first]))
-            for reason, count, first in times.unknown
+            Unknown(reason=reason, blocks=count, line=trace.line(first)) for reason, count, first in times.unknown
         ],
         cutting=round(today, 6),
         highest_cutting=round(best, 6),

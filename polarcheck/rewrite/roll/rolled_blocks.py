@@ -153,7 +153,7 @@ class Writer:
         for row in range(entry.first, self.each.first):
             if not trace.path.moves_z[row]:
                 continue
-            pen.numbers.line = int(trace.blocks.line_in_file[row])
+            pen.numbers.line = trace.line(row)
             z, feed = float(trace.path.z[row]), float(trace.feedrate.written_feed[row])
             is_rapid = trace.axes.motion[row] == Motion.RAPID
             self._blocks_of(row).extend(pen.rapid(z=z) if is_rapid else pen.line(None, z, feed))

@@ -139,9 +139,7 @@ def _section(
     if writer.count >= len(moves):
         text = f"the section would have {writer.count} blocks in the place of {len(moves)}"
         raise RefusedError([Refusal(candidate.line, text)])
-    return Section(
-        candidate, moves, fit, feeds, parts, unit, entry, writer, int(trace.blocks.line_in_file[writer.first])
-    )
+    return Section(candidate, moves, fit, feeds, parts, unit, entry, writer, trace.line(writer.first))
 
 
 def _require_off_center(original: Original, moves: AxisMoves, fit: Fit, step: float) -> None:
@@ -169,7 +167,7 @@ def _written(
     for section in sections:
         if section.entry is not None:
             row = section.entry.behind
-            left_out.append(int(original.trace.blocks.line_in_file[row]))
+            left_out.append(original.trace.line(row))
             edits.append(edit_behind(original, int(run.block[row]), section.text.inserted, style, machine))
             if section.text.positions:
                 edits.append(in_place_of(run, section.entry.c_word, section.text.positions))
@@ -231,7 +229,7 @@ def _on_feed(section: Section) -> Iterator[str]:
 def _on_entry(trace: Trace, section: Section) -> Iterator[str]:
     axis = trace.machine.polar.rotary_address
     if section.entry is not None:
-        line = int(trace.blocks.line_in_file[section.entry.behind])
+        line = trace.line(section.entry.behind)
         yield f"behind line {line} {axis} goes to 0 above the part, and back in the mode: --keep-c leaves it there"
     elif not trace.machine.polar.plane_is_fixed:
         angle = float(trace.path.c_angle_before[section.stretch.first])

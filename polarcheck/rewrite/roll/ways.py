@@ -59,7 +59,7 @@ def per_minute_rule(trace: Trace, stretches: list[Stretch], feed: str) -> str:
     mode = trace.feedrate.modal_feed_mode[moving]
     if not (mode == FeedMode.PER_MINUTE).any():
         return ""
-    line = int(trace.blocks.line_in_file[moving[np.argmax(mode == FeedMode.PER_MINUTE)]])
+    line = trace.line(moving[np.argmax(mode == FeedMode.PER_MINUTE)])
     if feed == INVERSE_TIME:
         code = trace.machine.codes("feed_inverse_time")[0]
         raise RefusedError([Refusal(line, f"F is per minute here, and not inverse time: no {code} is in force")])

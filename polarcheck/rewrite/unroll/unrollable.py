@@ -12,11 +12,10 @@ from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Mask
 from polarcheck.foundation.states import FeedMode, Motion, Side
 from polarcheck.program.execution.variable_names import FIRST_VARIABLE
-from polarcheck.rewrite.writing.outcome import Refusal, refusal_at
+from polarcheck.rewrite.writing.outcome import Refusal, radius_not_known, refusal_at
 from polarcheck.rewrite.writing.unknown_moves import UnknownMoves
 from polarcheck.rules.editing import written_word
 from polarcheck.rules.tables import Tables
-from polarcheck.rules.wording.offsets import called_tool, to_give
 
 #: Numbers of variables that do something when they are set; names have the numbers behind them.
 _SYSTEM = range(1000, FIRST_VARIABLE)
@@ -115,8 +114,7 @@ def _of_rows(tables: Tables) -> Iterator[tuple[int, str]]:
         (without_feed | alone, "F is missing"),
     ]  # fmt: skip
     for row in np.flatnonzero(mode.first_in_section(without_radius)).tolist():
-        missing = to_give(trace.tools, trace.machine, row, "radius")
-        yield row, f"R of {called_tool(trace.tools, row)} is not known: {missing}"
+        yield row, radius_not_known(trace, row)
     for row in np.flatnonzero(mode.first_in_section(within & (unknown_moves.word >= 0))).tolist():
         word = written_word(trace.run, int(unknown_moves.word[row]))
         yield row, f"{word} may be a macro that takes these axis words: the profile does not say what it does"

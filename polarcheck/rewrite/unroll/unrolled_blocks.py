@@ -40,10 +40,6 @@ class Writer:
             units: Numbers(trace.machine, style, units == Units.INCH)
             for units in np.unique(trace.lengths.units[trace.mode.section >= 0]).tolist()
         }
-        self._names: dict[str, str] = {}
-        self._mode = self._distance = 0
-        self._motion = self._feed = ""
-        self._has_feed = self._has_moved = False
 
     def of_section(self, section: Stretch) -> list[tuple[int, list[NewBlock] | None]]:
         """
@@ -198,7 +194,7 @@ class Writer:
 
     def _numbers(self, row: int) -> Numbers:
         numbers = self._by_units[int(self.trace.lengths.units[row])]
-        numbers.line = int(self.trace.blocks.line_in_file[row])
+        numbers.line = self.trace.line(row)
         return numbers
 
     def _names_of_axes(self, section: Stretch) -> dict[str, str]:

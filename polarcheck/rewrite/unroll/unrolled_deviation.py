@@ -108,7 +108,7 @@ def _wound_up(old: Trace, run: _Run, steps: Steps) -> Iterator[str]:
 
 
 def _line(trace: Trace, steps: Steps, index: int) -> int:
-    return int(trace.blocks.line_in_file[steps.row[index]])
+    return trace.line(steps.row[index])
 
 
 def _within(trace: Trace, spans: Sequence[tuple[int, int]]) -> Mask:

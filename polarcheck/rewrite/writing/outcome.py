@@ -15,12 +15,20 @@ if TYPE_CHECKING:
 
 def refusal_at(trace: Trace, row: int, text: str) -> Refusal:
     """A reason with the line of a row in the file."""
-    return Refusal(int(trace.blocks.line_in_file[row]), text)
+    return Refusal(trace.line(row), text)
 
 
 def refused_at(trace: Trace, row: int, text: str) -> RefusedError:
     """The error to raise for one reason with the line of a row in the file."""
     return RefusedError([refusal_at(trace, row, text)])
+
+
+def radius_not_known(trace: Trace, row: int) -> str:
+    """The reason where R of the offset in force is not known, with what to give."""
+    from polarcheck.rules.wording.offsets import called_tool, to_give  # late: it loads NumPy
+
+    missing = to_give(trace.tools, trace.machine, row, "radius")
+    return f"R of {called_tool(trace.tools, row)} is not known: {missing}"
 
 
 class Decision(msgspec.Struct, frozen=True):

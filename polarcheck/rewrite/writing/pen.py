@@ -287,5 +287,5 @@ def pen_at(trace: Trace, row: int, style: Style) -> Pen:
     """Return a pen for the machine of a program, in the units in force in a row; refusals name its line."""
     units = trace.lengths.units, trace.lengths.feed_units
     pen = Pen(trace.machine, style, *(bool(column[row] == Units.INCH) for column in units))
-    pen.numbers.line = int(trace.blocks.line_in_file[row])
+    pen.numbers.line = trace.line(row)
     return pen
