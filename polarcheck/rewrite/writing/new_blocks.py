@@ -171,11 +171,10 @@ def plane_behind(trace: Trace, row: int, last: int, target: Machine) -> str:
     key = _PLANES.get(int(trace.modal.state("plane")[row]) if row >= 0 else 0, "plane_zx")
     if not after or after[-1] == key or key not in planes.values():
         return ""
-    takes = np.isin(trace.axes.motion, (Motion.CW, Motion.CCW, Motion.CYCLE)) | trace.modal.in_cycle
-    takes |= trace.compensation.side != Side.OFF
-    ends = trace.modal.sets("plane") | trace.blocks.starts | trace.mode.enters
-    following = last + 1 + np.flatnonzero((takes | ends)[last + 1 :])[:1]
-    return key if (~ends[following]).any() else ""
+    ends = (trace.modal.sets("plane") | trace.blocks.starts | trace.mode.enters)[last + 1 :]
+    rows = slice(last + 1, last + 1 + int(np.argmax(ends)) if ends.any() else None)
+    takes = np.isin(trace.axes.motion[rows], (Motion.CW, Motion.CCW, Motion.CYCLE)) | trace.modal.in_cycle[rows]
+    return key if (takes | (trace.compensation.side[rows] != Side.OFF)).any() else ""
 
 
 def edits_of_signs(original: Original, machine: Machine) -> list[Replace]:
