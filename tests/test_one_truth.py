@@ -722,3 +722,19 @@ def test_the_order_of_axes_from_where_they_are_not_known_is_no_difference(contro
         text = sound.replace(first, words)
         assert compared(tmp_path, control, sound, text).exit_code == code
         assert certified(tmp_path, control, sound, text).exit_code == code
+
+
+@looped(
+    ("words", "verdict"),
+    [
+        *((f"{words} X#500", "unverified") for words in ("G10 P1", "G10 P0", "G10", "G10 L2 P1", "G10 L10 P1")),
+        *(("G10 P#500 X1.", "unverified"), ("#2001=#500", "unverified"), ("#2002=#500", "pass")),
+        *((f"{words} X#500", "pass") for words in ("G10 P2", "G10 L10 P2")),
+    ],
+)
+def test_an_offset_of_another_tool_leaves_nothing_open(words: str, verdict: str, tmp_path: Path) -> None:
+    sound, text = program("fanuc-30i"), program("fanuc-30i", ("/G0 X60", f"/{words}/G0 X60"))
+    assert report_of(text, "fanuc-30i", CUTTER).verdict == verdict
+    result = compared(tmp_path, "fanuc-30i", sound, text)
+    assert (result.exit_code, "nan" in result.stdout) == (1, False)
+    assert f"{words.removesuffix('.')} is added" in result.stdout

@@ -90,8 +90,10 @@ class UnknownWords(Columns, frozen=True):
     def _sets_origin(self) -> Mask:
         """Per executed word: X of data input of a work offset."""
         trace = self.trace
-        kinds = (0, *trace.machine.g_codes.data_input_work_offset)
-        rows = trace.blocks.listed("data_input") & np.isin(np.nan_to_num(trace.blocks.word("L")), kinds)
+        kind, number = trace.blocks.word("L"), trace.blocks.word("P")
+        # Without L P0 is the work shift; other numbers are tool offsets.
+        is_origin = np.isin(kind, (0, *trace.machine.g_codes.data_input_work_offset)) | (np.isnan(kind) & ~(number > 0))
+        rows = trace.blocks.listed("data_input") & is_origin
         return np.asarray(rows[trace.run.row] & trace.blocks.words_at(trace.blocks.word_indices("X", "U")))
 
     @cached_property

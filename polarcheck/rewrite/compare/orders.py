@@ -256,13 +256,13 @@ class _Reader:
         return (name, self._length(name, row, value), text) if is_order else None
 
     def _setting(self, row: int, assigned: Assigned) -> tuple[str, float, str]:
-        """Return token, value and text of an assignment; as it is written where nobody knows to which variable."""
-        if assigned.variable == NO_VARIABLE:
-            content = without_comments(self._trace.text, int(self._trace.run.block[row])).upper()
-            written = "".join(_NUMBER.sub("", content).split())
-            return written, assigned.value, written
+        """Return token, value and text of an assignment, as it is written where its variable or value is not known."""
         name = f"{assigned.name}={'+' * assigned.is_step}"
-        return name, assigned.value, f"{name}{assigned.value:.10g}"
+        if assigned.value == assigned.value:
+            return name, assigned.value, f"{name}{assigned.value:.10g}"
+        content = without_comments(self._trace.text, int(self._trace.run.block[row])).upper()
+        written = "".join(_NUMBER.sub("", content).split())
+        return written if assigned.variable == NO_VARIABLE else name, assigned.value, written
 
     def _feed(self, row: int) -> tuple[str, float | None, str]:
         """
