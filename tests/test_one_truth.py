@@ -738,3 +738,15 @@ def test_an_offset_of_another_tool_leaves_nothing_open(words: str, verdict: str,
     result = compared(tmp_path, "fanuc-30i", sound, text)
     assert (result.exit_code, "nan" in result.stdout) == (1, False)
     assert f"{words.removesuffix('.')} is added" in result.stdout
+
+
+@looped(
+    ("old", "new"),
+    [("X0 Y20.785", "X0 Y20.785 RND=R500"), ("/G42", "/RNDM=R500/G42"), ("X0 Y20.785", "X0 Y20.785 CHR=R500")],
+)
+def test_corners_of_an_unknown_size_are_no_corners_of_the_part(old: str, new: str) -> None:
+    text = program("siemens-transmit", (old, new))
+    assert report_of(text, "siemens-transmit", CUTTER).verdict == "unverified"
+    (shape, *_) = made_by(tables_of(text, "siemens-transmit", CUTTER))
+    assert "corners not simulated" in f"{shape.needs}"
+    assert not in_one_line(tables_of(text, "siemens-transmit", CUTTER))

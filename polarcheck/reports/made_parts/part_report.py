@@ -15,6 +15,7 @@ import msgspec
 import numpy as np
 
 from polarcheck.checking.channel_reports import first_runs
+from polarcheck.columns.filling import last_row
 from polarcheck.foundation.errors import TooHardError
 from polarcheck.foundation.finding import FileReport, LeftStanding, MadeInSection, MadeShape, OddSide
 from polarcheck.foundation.states import Units
@@ -158,13 +159,18 @@ def _missing(trace: Trace, section: int) -> str:
 
 
 def _sharp_corners(trace: Trace, section: int) -> str:
-    """The lines of corners and chamfers that words ask for and that are not simulated."""
-    run = trace.run
+    """The lines of corners and chamfers that words ask for and that are not simulated, or not known."""
+    run, made = trace.run, trace.machine.arcs.made_corners
     blocks = [
         one.block for one in run.remarks if one.kind == "corner-not-made" or one.values.get("name") in _CORNER_WORDS
     ]
     written = trace.blocks.has(*trace.machine.arcs.corners_not_made) | (np.isin(run.block, blocks) if blocks else False)
-    lines = trace.blocks.line_in_file[(trace.mode.section == section) & written]
+    in_section = trace.mode.section == section
+    rows = in_section & (written | trace.blocks.is_unknown(*made))
+    lasting = [word for word, kind in made.items() if kind == "modal-radius"]
+    in_force = last_row(trace.blocks.is_unknown(*lasting), trace.blocks.has(*lasting))[in_section]
+    rows[in_force[in_force >= 0]] = True
+    lines = trace.blocks.line_in_file[rows]
     if not len(lines):
         return ""
     where = ", ".join(map(str, dict.fromkeys(lines.tolist())))
