@@ -750,3 +750,22 @@ def test_corners_of_an_unknown_size_are_no_corners_of_the_part(old: str, new: st
     (shape, *_) = made_by(tables_of(text, "siemens-transmit", CUTTER))
     assert "corners not simulated" in f"{shape.needs}"
     assert not in_one_line(tables_of(text, "siemens-transmit", CUTTER))
+
+
+@looped(
+    ("control", "deeper"),
+    [
+        ("fanuc-30i", "G1 Z-#500 F200"),
+        ("haas-lathe", "G1 Z-#500 F200."),
+        ("siemens-transmit", "G1 Z=-R500 F200"),
+        ("okuma-osp", "G101 Z=-VC500 F200"),
+    ],
+)
+def test_a_pass_at_an_unknown_depth_may_be_the_deepest(control: str, deeper: str) -> None:
+    text = program(control)
+    contour = text[text.index("G42") : text.index("Z2", text.index("G42"))]
+    text = text.replace(contour, f"{contour}{deeper}\n{contour}", 1)
+    assert report_of(text, control, CUTTER).verdict == "unverified"
+    (shape, *_) = made_by(tables_of(text, control, CUTTER))
+    assert (shape.z, "to Z not known" in shape.text) == (None, True)
+    assert in_one_line(tables_of(text, control, CUTTER)) == "hexagon, 36.000 across flats, to Z not known"

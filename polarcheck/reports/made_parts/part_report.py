@@ -91,7 +91,7 @@ def in_one_line(tables: Tables) -> str:
 
 
 def _deepest(group: Sequence[Depth], sizes: Sizes, into: float) -> str:
-    depths = [depth.z for depth in group if not np.isnan(depth.z)]
+    depths = _known_depths(group)
     return f"to Z{sizes(_deepest_of(depths, into))}{_floor(group, sizes, into)}" if depths else "to Z not known"
 
 
@@ -338,7 +338,7 @@ def _entries(trace: Trace, depths: Sequence[Depth], into: float) -> Iterator[Mad
 def _entry(trace: Trace, group: Sequence[Depth], shape: Shape, into: float) -> MadeShape:
     first = group[0]
     sizes = _sizes(trace, _row_of(trace, first, shape))
-    depths_known = [depth.z for depth in group if not np.isnan(depth.z)]
+    depths_known = _known_depths(group)
     sections = _sections(trace, first.sections)
     odd = [OddSide(line=int(trace.blocks.line_in_file[side.row]), size=round(side.size, 6)) for side in shape.odd]
     texts = [
@@ -391,6 +391,12 @@ def _angles_in_words(angles: Sequence[float]) -> str:
         first, last = angle_in_words(angles[0]), angle_in_words(angles[-1])
         return f"{first} to {last}, {float(steps.mean()):.4g} deg apart"
     return ", ".join(map(angle_in_words, angles))
+
+
+def _known_depths(group: Sequence[Depth]) -> list[float]:
+    """Return the depths of a group [mm]; none where one of them is not known, which may be the deepest."""
+    depths = [depth.z for depth in group]
+    return [] if np.isnan(depths).any() else depths
 
 
 def _deepest_of(depths: Sequence[float], into: float) -> float:
