@@ -30,6 +30,12 @@ def test_a_hexagon_is_sound() -> None:
     assert found(f"{HEAD}/{CONTOUR}/{END}", **bar(40)) == {}
 
 
+@looped(("feed", "expected"), [(" F1500", {}), ("", {"cut-in-air": "warning"})])
+def test_the_way_between_two_cuts_of_one_compensation_is_no_cut(feed: str, expected: dict[str, str]) -> None:
+    flats = f"C-20./Z-5./G42 X28. C-16. F200/C20./Z2.{feed}/X-28. C20./Z-5./C-20. F200/G40 X-60. C-22. F1500/Z2."
+    assert found(f"{HEAD.removesuffix('/Z-5.')}/{flats}/G13.1/G0 X100. Z50./M30") == expected
+
+
 @looped(("x", "expected"), [("54.", {}), ("44.", {"approach-inside-stock": "error"})])
 def test_beyond_the_turned_bar_no_wall_stands(x: str, expected: dict[str, str]) -> None:
     """Two flats, each longer than the spigot of 31 mm is wide: beside it the line of the other is in the air."""

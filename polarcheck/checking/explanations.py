@@ -60,6 +60,8 @@ _NAMED = 2
 #: By how much less one may explain that removes all findings of a path, where likelier ones leave some [coordinates].
 _LESS_LIKELY = 1.5
 
+#: Blocks from the last one of a contour on in which a finding is a reason to tell nothing else of the contour.
+_AROUND = 4
 #: So many rules must find something that a code in another block explains, in a path of so many blocks: the geometry
 #: does not speak for it.
 _RULES_OF_CODE, _BLOCKS_OF_CODE = 2, 4
@@ -147,7 +149,7 @@ def _explained(
     lines = {line for finding in findings for line in (finding.line, *(other.line for other in finding.follows))}
     unexplained = []
     for rows, correction in less_regular(engine):
-        if lines.isdisjoint(trace.blocks.line[rows[0] : rows[-1] + 1].tolist()):
+        if lines.isdisjoint(trace.blocks.line[rows[0] : rows[-1] + _AROUND].tolist()):
             unexplained.append(_new(engine, correction))
             lines.add(unexplained[-1].line)
     return [*findings, *unexplained], partly, whole

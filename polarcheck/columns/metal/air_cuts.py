@@ -77,10 +77,25 @@ class AirCuts(Columns, frozen=True):
     def walls(self) -> Mask:
         """Rows that cut the contour: in offset mode, or all cuts of sections without compensation."""
         trace = self.trace
-        compensated = trace.compensation.compensates & trace.path.travels & ~trace.compensation.starts_up
+        compensated = (
+            trace.compensation.compensates & trace.path.travels & ~trace.compensation.starts_up & ~self._lifted
+        )
         bare = trace.path.cuts & trace.path.travels & ~trace.mode.anywhere_in_section(trace.compensation.compensates)
         cuts = (compensated | bare) & (trace.mode.section >= 0) & ~trace.modal.on_sub_spindle & trace.mode.is_followed
         return np.asarray(cuts & ~trace.mode.anywhere_in_section(cuts & np.isnan(trace.path.z)))
+
+    @property
+    def _lifted(self) -> Mask:
+        """Rows above Z0 between two cuts of one G41 or G42, and faster than all of its cuts."""
+        trace, z = self.trace, self.trace.path.z
+        row, stretch = np.arange(len(trace)), np.cumsum(trace.compensation.starts_up)
+        low = trace.compensation.compensates & trace.path.travels & (z < -_ABOVE)
+        columns = (np.minimum, row, len(trace)), (np.maximum, row, -1), (np.maximum, trace.feedrate.feed, -np.inf)
+        first, last, fastest = (
+            folded(fold, stretch[low], values[low], int(stretch[-1]) + 1, none)[stretch]
+            for fold, values, none in columns
+        )
+        return np.asarray((z > _ABOVE) & (first < row) & (row < last) & (trace.feedrate.feed > fastest))
 
     @cached_property
     def _entry(self) -> Floats:
