@@ -77,3 +77,17 @@ def test_where_the_language_has_no_such_word_it_is_the_same_finding(machine: str
 def test_a_comma_between_arguments_or_in_a_comment_is_none(machine: str, block: str) -> None:
     assert not [one for one in strays(machine, block) if one.startswith(",")]
     assert "stray-character" not in {rule for _, rule in said(report_of(program(machine, block), machine))}
+
+
+@looped("separator", [" ", ""])
+def test_where_all_points_are_commas_those_at_the_end_of_a_number_are_points_too(separator: str) -> None:
+    blocks = ["G42 X30, C-8,66 F250,", "C8,66", "X15,5 C16,", "G3 X-15, C16, R20,", "G1 C-8,66", "X30,", "G40 X60,"]
+    section = ["O1", "T0101", "G98 G0 X60, C0 Z5,", "G12.1", "G1 Z-2, F300,", *blocks, "Z2,", "G13.1", "M30"]
+    report = report_of("\n".join(section).replace(" ", separator) + "\n", "fanuc", "1:radius=4")
+    assert {rule for _, rule in said(report)}.isdisjoint({"corner-word-in-polar", "arc-without-center"})
+    assert [rule for _, rule in said(report)].count("stray-character") == 1
+
+
+def test_a_chamfer_behind_a_number_without_a_point_is_one() -> None:
+    corners = "O1\nT0101\nG98 G0 X60. C0 Z5.\nG12.1\nG1 X40. F200\nC20,R3.\nX-40.\nG13.1\nM30\n"
+    assert (6, "corner-word-in-polar") in said(report_of(corners, "fanuc", "1:radius=4"))

@@ -9,6 +9,9 @@ import pytest
 from cases import looped
 from programs import report_of, said
 
+from polarcheck.checking import explanations
+from polarcheck.columns.contour import correction_search
+
 HEAD = ["O1", "T0101", "G98 G0 X60. Z2. C0", "G12.1", "G1 X50. F1500", "Z-4. F300"]
 TAIL = ["G40 X60. F1500", "Z2.", "G13.1", "M30"]
 #: A rectangle of 40 x 20 with corners of R 3.
@@ -435,6 +438,25 @@ def test_a_limit_that_is_only_noted_leads_no_finding() -> None:
     (finding,) = (finding for finding in findings if finding.severity != "note")
     assert (finding.rule, finding.line) == ("nearly-regular-contour", lines.index(slot[2]) + 1)
     assert "with G3" in finding.message
+
+
+def test_no_contour_is_searched_again_that_an_edit_leaves_as_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A hexagon with its own slip in each section: what is tried in one says nothing new of the others."""
+    slips = [("C-8.66", "C-6.88"), ("C17.321", "C17.231"), ("X-30.", "X-33."), ("C-17.321", "C-13.721")]
+    hexagon = "G42 X30. F200/C8.66/X0 C17.321/X-30. C8.66/C-8.66/X0 C-17.321/X30. C-8.66/C0"
+    contours = [hexagon.replace(right, wrong, 1) for right, wrong in slips]
+    sections = ["/".join(["G0 X60. Z2. C0", *HEAD[3:], contour, *TAIL[:-1]]) for contour in contours * 2]
+    searched: list[object] = []
+    best, trials = correction_search._Search.best, explanations.edited
+    monkeypatch.setattr(correction_search._Search, "best", lambda search: searched.append("best") or best(search))
+    monkeypatch.setattr(explanations, "edited", lambda *given: searched.append("edited") or trials(*given))
+    report = report_of(
+        "\n".join([*HEAD[:2], "G98", *"/".join(sections).split("/"), "M30"]) + "\n", "fanuc", "1:radius=4"
+    )
+    assert [rule for _, rule in said(report)].count("nearly-regular-contour") >= len(slips)
+    # Once as it is written, and once where it is changed.
+    assert searched.count("best") <= 3 * len(slips)
+    assert searched.count("edited") <= 2 * len(slips)
 
 
 def test_what_an_arc_that_is_none_has_hidden_is_no_reason_against_what_mends_it() -> None:

@@ -28,6 +28,11 @@ BETWEEN = ["G0 Z20."]
 
 #: Sound sections for R 4 mm, without their head; `/` separates blocks.
 SQUARE = "G0 X80. Z2. C0/G12.1/G1 Z-5. F300/G42 X40. F200/C20./X-40./C-20./X40./C0/G40 X80./Z2./G13.1"
+#: A round pocket beside the center.
+POCKET = (
+    "G41 X32. F200/G3 X40. C0 I0 J4./X24. C8. I-8. J0/X8. C0 I0 J-8./X24. C-8. I8. J0/X40. C0 I0 J8./X32. C4. I-4. J0/"
+    "G40 G1 X22. F1000"
+)
 ROUND = (
     "G0 X80. Z2. C0/G12.1/G1 Z-5. F300/G42 X40. F200/C10./G3 X20. C20. I-10. J0/G1 X-20./G3 X-40. C10. I0 J-10./"
     "G1 C-10./G3 X-20. C-20. I10. J0/G1 X20./G3 X40. C-10. I0 J10./G1 C0/G40 X80./Z2./G13.1"
@@ -452,6 +457,23 @@ WHOLE = [
     ("an origin beside the center", [*HEAD, "G10 L2 P1 X5.", "G54"], SQUARE, END, "G12.1", "origin-off-center"),
     ("M3O", HEAD, SQUARE, ["G0 Z50.", "M3O"], "M3O", "letter-for-digit"),
     ("no M30", HEAD, SQUARE, ["G0 Z50."], "G0 Z50.", "program-end-missing"),
+    ("cut off", HEAD, SQUARE.partition("/X-40.")[0], [], "C20.", "program-end-missing"),
+    (
+        "G13.1 forgotten before turning",
+        HEAD,
+        SQUARE.replace("/G13.1", ""),
+        ["G0 X62. Z2.", "G99 G1 Z-20. F0.2", "X66.", "G0 Z5.", "M30"],
+        "G12.1",
+        "polar-never-left",
+    ),
+    (
+        "G41 forgotten in the first of two passes",
+        HEAD,
+        f"G0 X32. Z2. C0/G12.1/G1 X22. C-4. F1000/Z-2. F80/{POCKET.partition(' ')[2]}/C-4./Z-4. F80/{POCKET}/Z2./G13.1",
+        END,
+        "G40 G1 X22. F1000",
+        "cancel-without-start-up",
+    ),
     (
         "G13.1 forgotten before a drill",
         HEAD,

@@ -39,6 +39,9 @@ def sections(program: str) -> list[tuple[int, int, bool]]:
         ("G12.1\nG1 X40. F100\nC5.\nG0 X80. Z5.\nG12.1\nG1 X40.\nC5.\nG13.1\nM30\n", [(1, 4, False), (5, 8, True)]),
         ("G12.1\nG1 X40. F100\nC5.\nG28 U0\nG12.1\nG1 X40.\nC5.\nG13.1\nM30\n", [(1, 4, False), (5, 8, True)]),
         ("G12.1\nG1 X40. F100\nC5.\nT0202\nG12.1\nG1 X40.\nC5.\nG13.1\nM30\n", [(1, 4, False), (5, 8, True)]),
+        # Turning by the same tool behind a G0 is no part of the section, be its last cut a circle.
+        ("G12.1\nG1 X40. F100\nC5.\nX60.\nG0 X62.\nG99 G1 Z-9. F.2\nX66.\nG0 Z5.\nM30\n", [(1, 5, False)]),
+        ("G12.1\nG1 X40. F100\nG3 I-20. J0\nG1 X60.\nG0 X62.\nG1 Z-9.\nX66.\nG0 Z5.\nM30\n", [(1, 5, False)]),
         # A move in X alone after G28 does not bring the mode back.
         ("G12.1\nG1 X40. F100\nC5.\nG28 U0\nG1 X30.\nT0202\nM30\n", [(1, 4, False)]),
         # M1 before the retract, or anywhere in the work of a tool, ends nothing.

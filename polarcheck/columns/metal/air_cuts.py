@@ -88,9 +88,10 @@ class AirCuts(Columns, frozen=True):
     def _lifted(self) -> Mask:
         """Rows above Z0 between two cuts of one G41 or G42, and faster than all of its cuts."""
         trace, z = self.trace, self.trace.path.z
-        row, stretch = np.arange(len(trace)), np.cumsum(trace.compensation.starts_up)
+        row: Rows = np.arange(len(trace))
+        stretch: Rows = np.cumsum(trace.compensation.starts_up, dtype=np.int64)
         low = trace.compensation.compensates & trace.path.travels & (z < -_ABOVE)
-        columns = (np.minimum, row, len(trace)), (np.maximum, row, -1), (np.maximum, trace.feedrate.feed, -np.inf)
+        columns = (np.minimum, row, len(trace)), (np.maximum, row, -1), (np.fmax, trace.feedrate.feed, -np.inf)
         first, last, fastest = (
             folded(fold, stretch[low], values[low], int(stretch[-1]) + 1, none)[stretch]
             for fold, values, none in columns
