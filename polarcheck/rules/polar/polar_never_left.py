@@ -9,6 +9,7 @@ if TYPE_CHECKING:
     from polarcheck.columns.modes.executed_blocks import ExecutedBlocks
     from polarcheck.columns.modes.mode import PolarMode
     from polarcheck.columns.trace import Trace
+    from polarcheck.columns.words.written import Written
     from polarcheck.rules.hit import Details, Hit
 
 #: Of a block that is named; more is cut off [characters].
@@ -24,7 +25,7 @@ _BLOCK_LENGTH = 60
     subject="mode",
     follows={"program": ("program-end-missing",)},
 )
-def polar_never_left(blocks: ExecutedBlocks, mode: PolarMode) -> Hits:
+def polar_never_left(blocks: ExecutedBlocks, mode: PolarMode, written: Written) -> Hits:
     """
     Polar mode still on at the tool change or the end of the program.
 
@@ -77,8 +78,8 @@ def polar_never_left(blocks: ExecutedBlocks, mode: PolarMode) -> Hits:
     import numpy as np
 
     # A program that has lost its end has lost this code with it.
-    leave = mode.sections.leave
-    return Hits(~mode.sections.left, follows={"program": np.append(blocks.starts, True)[leave]})
+    is_at_end = np.append(blocks.starts, True)[mode.sections.leave]
+    return Hits(~mode.sections.left, follows={"program": is_at_end | ~written.lacks_end.any()})
 
 
 def details(hit: Hit, blocks: ExecutedBlocks, mode: PolarMode, upright: Trace, bar: Bar) -> Details:
