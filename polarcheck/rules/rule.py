@@ -159,11 +159,13 @@ class Rule(Documented, frozen=True):
         name, group = function.__name__.replace("_", "-"), function.__module__.split(".")[-2]
         if self.over not in OVER:
             raise RuleError(f"rule {name}: over={self.over!r}: expected one of {', '.join(OVER)}")
-        spans = {*self.follows, *([self.once] if self.once else []), *(at for _, at in self.doubts if at != UNIT)}
-        if unknown := spans - set(SPANS):
-            raise RuleError(f"rule {name}: {unknown.pop()!r}: expected one of {', '.join(SPANS)}")
-        if unknown := {what for what, _ in self.doubts} - DOUBTFUL:
-            raise RuleError(f"rule {name}: {unknown.pop()!r}: expected one of {', '.join(sorted(DOUBTFUL))}")
+        spans = (*self.follows, *([self.once] if self.once else ()), *(at for _, at in self.doubts if at != UNIT))
+        for span in spans:
+            if span not in SPANS:
+                raise RuleError(f"rule {name}: {span!r}: expected one of {', '.join(SPANS)}")
+        for what, _ in self.doubts:
+            if what not in DOUBTFUL:
+                raise RuleError(f"rule {name}: {what!r}: expected one of {', '.join(sorted(DOUBTFUL))}")
         parameters = parameters_of(function)
         subject = subject_of(parameters) if self.subject == OF_TABLES else self.subject
         if subject and subject not in SUBJECTS:

@@ -238,13 +238,7 @@ class Written:
     @cached_property
     def overruled(self) -> Rows:
         """Per word: the word before it in the block that is another code of the same modal group, else -1."""
-        system = self.machine.control.g_code_system
-        names, group_of, _ = modal_tables(self.machine)
-        group = group_of.copy()
-        group[np.isin(group, [names.index(name) + 1 for name in _UNSURE_GROUPS])] = 0
-        if system == "A":
-            group[code_set(code for key in _OF_OTHER_SYSTEMS for code in self.machine.codes(key))] = 0
-        group[NO_CODE] = 0
+        group = self.machine.cached("groups that exclude", lambda: _groups_that_exclude(self.machine))
         kind = group[self._g_codes]
         bits = np.where(kind > 0, np.uint64(1) << kind.astype(np.uint64), np.uint64(0))
         suspects = self._suspects(self._g_words, bits)
@@ -257,11 +251,7 @@ class Written:
     @cached_property
     def unknown_code_count(self) -> Rows:
         """Per word: the number of times that an unknown G code occurs, at its first word in the file, else 0."""
-        machine = self.machine
-        polar = machine.polar
-        listed = (*machine.control.known_codes, *machine.control.motion_codes, *machine.listed_codes)
-        native = [text for text in machine.control.native_words.values() if is_code(text)]
-        known = code_set((*listed, *native, *polar.on, *polar.off, *polar.ended_by, *polar.allowed_codes))
+        known = self.machine.cached("known G codes", lambda: _known_g_codes(self.machine))
         wrong = ~known[self._g_codes] & (self.words.fault[self._g_words] == NumberFault.NONE)
         words = self._g_words[wrong]
         if not len(words):
@@ -467,3 +457,22 @@ def _inside(at: Rows, spans: object) -> Mask:
     """True for positions in any of the spans; the spans may have any order."""
     start, end = np.sort(spans.start), np.sort(spans.end)  # type: ignore[attr-defined]
     return np.asarray(np.searchsorted(start, at, side="right") > np.searchsorted(end, at, side="right"))
+
+
+def _groups_that_exclude(machine: Machine) -> NDArray[np.uint8]:
+    """For each code number its modal group, from 1; 0 for none, and where two codes of it may stand in one block."""
+    names, group_of, _ = modal_tables(machine)
+    group = group_of.copy()
+    group[np.isin(group, [names.index(name) + 1 for name in _UNSURE_GROUPS])] = 0
+    if machine.control.g_code_system == "A":
+        group[code_set(code for key in _OF_OTHER_SYSTEMS for code in machine.codes(key))] = 0
+    group[NO_CODE] = 0
+    return group
+
+
+def _known_g_codes(machine: Machine) -> Mask:
+    """For each code number: a G or M code that the profile names anywhere."""
+    control, polar = machine.control, machine.polar
+    native = [text for text in control.native_words.values() if is_code(text)]
+    listed = (*control.known_codes, *control.motion_codes, *machine.listed_codes, *native)
+    return code_set((*listed, *polar.on, *polar.off, *polar.ended_by, *polar.allowed_codes))
