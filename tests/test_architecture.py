@@ -246,7 +246,7 @@ def test_what_reads_no_program_loads_no_numpy(arguments: list[str]) -> None:
 
 #: What only findings, other options, many faces or drawings need; each takes longer than the check of a small file.
 LATE = (
-    *("shapely", "numpy.ma", "rich", "plotly", "ezdxf", "multiprocessing"),
+    *("shapely", "numpy.ma", "rich", "plotly", "ezdxf", "multiprocessing", "_hashlib"),
     *("polarcheck.geometry.polygons", "polarcheck.geometry.material_left", "polarcheck.geometry.comparison"),
     *("polarcheck.geometry.overcuts.cuts", "polarcheck.geometry.overcuts.own_loop"),
     *("polarcheck.rules.message", "polarcheck.rules.hit", "polarcheck.rules.repair"),

@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 
 from polarcheck.foundation.arrays import stretch
+from polarcheck.foundation.digest import sha256_of
 from polarcheck.program.reading.words import Text
 from polarcheck.rules.places import Place
 from polarcheck.rules.rule import Rule
@@ -25,10 +26,8 @@ _PLUS = re.compile(r"(?<=[A-Z=])\+(?=[\d.])")
 
 def fingerprint(rule: Rule, text: Text, element: Place) -> str:
     """16 hexadecimal digits, the same for the same rule in the same block, wherever that stands."""
-    import hashlib  # late: a program without findings does not need it
-
     words = "" if rule.over == "files" else _words(text, element)
-    return hashlib.sha256(f"{rule.name}\0{words}".encode("utf-8", "replace")).hexdigest()[:16]
+    return sha256_of(f"{rule.name}\0{words}".encode("utf-8", "replace"))[:16]
 
 
 def _words(text: Text, element: Place) -> str:

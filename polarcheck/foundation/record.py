@@ -8,10 +8,11 @@ import stat
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextvars import ContextVar
-from hashlib import blake2b
 from itertools import islice
 from pathlib import Path
 from typing import Generic, NamedTuple, TypeVar
+
+from polarcheck.foundation.digest import blake2b
 
 Path_ = str | os.PathLike[str]
 Key = TypeVar("Key")

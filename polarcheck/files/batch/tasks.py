@@ -15,6 +15,7 @@ from polarcheck.checking import check
 from polarcheck.checking.polar_sections import with_doubts
 from polarcheck.checking.settings import Settings
 from polarcheck.files.batch.spool import Spool
+from polarcheck.foundation.digest import sha256_of
 from polarcheck.foundation.errors import ClusterError, SourceError, TooHardError, one_line
 from polarcheck.foundation.finding import (
     ERROR,
@@ -337,14 +338,12 @@ def unreadable_folder(failure: str) -> Outcome:
 
 def _of_task(task: Task, data: bytes | None) -> dict[str, Any]:
     """Return the values of a report that hang on the bytes of a file and its settings, by their names."""
-    import hashlib  # late: no other command needs it
-
     return {
         "machine": task.settings.machine_id,
         "machine_file": task.settings.machine_file or msgspec.UNSET,
         "profile_sha256": task.settings.profile_sha256,
         "settings": task.settings.decided if task.settings.differs else msgspec.UNSET,
-        "sha256": None if data is None else hashlib.sha256(data).hexdigest(),
+        "sha256": None if data is None else sha256_of(data),
     }
 
 

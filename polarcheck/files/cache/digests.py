@@ -6,7 +6,6 @@ import enum
 import re
 import struct
 from collections.abc import Iterator, Mapping, Sequence, Set
-from hashlib import blake2b
 from pathlib import Path
 from types import FunctionType
 from typing import Any
@@ -14,6 +13,7 @@ from typing import Any
 import msgspec
 
 from polarcheck.checking.settings import Settings
+from polarcheck.foundation.digest import blake2b
 from polarcheck.rules.rule import Rule
 
 #: Bytes of a digest.

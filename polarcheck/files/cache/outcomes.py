@@ -6,7 +6,6 @@ import os
 import stat
 from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager
-from hashlib import blake2b
 from typing import Any
 
 import msgspec
@@ -19,6 +18,7 @@ from polarcheck.files.cache.store import NAME, Store, folder_key, user_key
 from polarcheck.foundation import record
 from polarcheck.foundation.bounded import read_file
 from polarcheck.foundation.decoding import msgpack_decoder
+from polarcheck.foundation.digest import blake2b
 from polarcheck.foundation.finding import FileReport, Finding, Undecided
 from polarcheck.foundation.record import LookUp
 from polarcheck.program.reading import files

@@ -12,12 +12,12 @@ import os
 import stat
 import sys
 from collections.abc import Iterator, Sequence
-from hashlib import blake2b
 from typing import Any
 
 from polarcheck.files.cache.code_digest import code_digest
 from polarcheck.files.cache.store import NAME, Store, folder_key, user_key
 from polarcheck.foundation import record
+from polarcheck.foundation.digest import blake2b
 
 #: Bytes of a digest.
 _SIZE = 16

@@ -13,10 +13,10 @@ import os
 import re
 import stat
 import sys
-from hashlib import blake2b
 from pathlib import Path
 
 from polarcheck.foundation import bounded, record
+from polarcheck.foundation.digest import blake2b
 
 NAME = ".polarcheck_cache"
 #: The largest file, of 256; entries that have not been used for the longest time go first [bytes].

@@ -17,6 +17,7 @@ from polarcheck.files.settings import decisions, job_files, selection
 from polarcheck.files.settings.job_files import JobFile
 from polarcheck.files.settings.job_layers import Merged
 from polarcheck.files.settings.selection import Rules
+from polarcheck.foundation.digest import sha256_of
 from polarcheck.foundation.errors import MachineError, UsageError
 from polarcheck.foundation.finding import Decided
 from polarcheck.foundation.patterns import lazy_pattern
@@ -384,10 +385,7 @@ class SettingsMaker:
     def _hash(self, machine: Machine) -> str:
         """Return the SHA-256 of all values of a machine."""
         if id(machine) not in self._hashes:
-            import hashlib
-
-            values = msgspec.json.encode(machine, order="deterministic")
-            self._hashes[id(machine)] = hashlib.sha256(values).hexdigest()
+            self._hashes[id(machine)] = sha256_of(msgspec.json.encode(machine, order="deterministic"))
         return self._hashes[id(machine)]
 
     def _chosen(self, job: Job, merged: Merged, profile: profiles.Profile) -> _Chosen:
