@@ -812,11 +812,6 @@ def test_what_comes_from_files_acts_on_no_terminal() -> None:
     assert "\x1b" not in call("config", "show", "a.nc").stdout
 
 
-OF_OUTPUT = {
-    *("form", "outputs", "color", "quiet", "following", "which", "debug", "statistics", "show_silenced"),
-}
-
-
 def test_what_decides_how_a_program_is_executed_is_asked_of_each_command_that_reads_one() -> None:
     """All that has a place in [run], in what is read, or in the machine: of check, of trace, of config show."""
     deciding = {

@@ -296,8 +296,6 @@ def test_no_text_takes_long(program: str) -> None:
 
 # ---- the sample program of the builder's guide, copied with its descriptions ----
 
-TEXT_ALONE = [(1, RULE)]
-
 
 def table() -> str:
     """The program as the guide prints it: the block, a tab, what it does."""

@@ -317,9 +317,6 @@ class Writer:
         self.write("G0 Z20.", "clear")
         self.section = -1
 
-    def end_of_call(self) -> None:
-        self.write("G0 Z60.", "home")
-
     def clear_of(self, radius: float) -> float:
         """X that clears the bar at the depth of the mills, as a diameter."""
         return float(math.ceil(self.spigot + 2 * radius + 3))
