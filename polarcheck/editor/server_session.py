@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from lsprotocol import types
+from pygls.capabilities import get_capability
 from pygls.lsp.server import LanguageServer
 
 from polarcheck.editor.buffers import Buffer, Buffers
@@ -128,10 +129,6 @@ class Server(LanguageServer):
         analysis = await self.buffers.judged(uri, soon=soon)
         return none if analysis is None else await self.buffers.ask(function, analysis)
 
-    def prefers_markdown(self, formats: Sequence[types.MarkupKind] | None) -> bool:
-        """Return True if Markdown is among the formats that the editor shows."""
-        return bool(formats) and types.MarkupKind.Markdown in (formats or ())
-
     # ---- internal errors ----
 
     def _report_bug(self, error: Exception, path: str) -> None:
@@ -163,9 +160,7 @@ class Server(LanguageServer):
         self._loop = asyncio.get_running_loop()
         self._polling = asyncio.create_task(self._poll())
         loaded = asyncio.ensure_future(self.buffers.worker.do(_load))
-        of_workspace = self.client_capabilities.workspace
-        watching = of_workspace.did_change_watched_files if of_workspace is not None else None
-        if watching is not None and watching.dynamic_registration:
+        if get_capability(self.client_capabilities, "workspace.did_change_watched_files.dynamic_registration"):
             options = types.DidChangeWatchedFilesRegistrationOptions([types.FileSystemWatcher("**/*.toml")])
             watched = types.Registration("settings", types.WORKSPACE_DID_CHANGE_WATCHED_FILES, options)
             # If the editor refuses, polling still sees the changes.

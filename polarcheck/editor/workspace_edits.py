@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from lsprotocol import types
+from pygls.capabilities import get_capability
 
 if TYPE_CHECKING:
     from polarcheck.editor.server_session import Server
@@ -13,11 +14,14 @@ if TYPE_CHECKING:
     from polarcheck.editor.structure.workspace import Workspace
 
 
+def names_versions(server: Server) -> bool:
+    """Return True if edits for this editor may name the version of a document."""
+    return bool(get_capability(server.client_capabilities, "workspace.workspace_edit.document_changes"))
+
+
 def workspace_edit(server: Server, edits: Mapping[str, list[types.TextEdit]]) -> types.WorkspaceEdit:
     """Return edits by URI as one change; with the versions of open documents if the editor knows them."""
-    of_workspace = server.client_capabilities.workspace
-    of_edits = of_workspace.workspace_edit if of_workspace is not None else None
-    if of_edits is None or not of_edits.document_changes:
+    if not names_versions(server):
         return types.WorkspaceEdit(changes=dict(edits))
     opened = server.buffers.open
     return types.WorkspaceEdit(

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from lsprotocol import types
+from pygls.capabilities import get_capability
 from pygls.exceptions import JsonRpcException
 
 from polarcheck.foundation.errors import PolarcheckError
@@ -51,15 +52,12 @@ def _with_declaration(server: Server, params: Any, document: Any) -> tuple[Any, 
 
 
 def _most_ranges(server: Server, params: Any, document: Any) -> tuple[Any, ...]:
-    of_text = server.client_capabilities.text_document
-    of_folding = of_text.folding_range if of_text is not None else None
-    return (of_folding.range_limit if of_folding is not None else None,)
+    return (get_capability(server.client_capabilities, "text_document.folding_range.range_limit"),)
 
 
 def _format_of_hover(server: Server, params: Any, analysis: Any) -> tuple[Any, ...]:
-    of_text = server.client_capabilities.text_document
-    formats = of_text.hover.content_format if of_text is not None and of_text.hover is not None else None
-    return params.position, server.prefers_markdown(formats)
+    formats = get_capability(server.client_capabilities, "text_document.hover.content_format", ())
+    return params.position, types.MarkupKind.Markdown in formats
 
 
 def _new_name(server: Server, params: Any, document: Any) -> tuple[Any, ...]:

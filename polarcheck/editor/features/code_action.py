@@ -1,4 +1,4 @@
-"""Code actions: a function for each kind of them."""
+"""Code actions: fixes and allow comments of findings, and rewritings that need no check."""
 
 from __future__ import annotations
 
@@ -12,19 +12,8 @@ if TYPE_CHECKING:
     from polarcheck.editor.server_session import Server
 
 
-def _quick_fixes(
-    analysis: Analysis, uri: str, version: int | None, selected: types.Range, with_versions: bool
-) -> list[types.CodeAction]:
-    from polarcheck.editor.actions import actions
-
-    return actions(analysis, uri, version, selected, with_versions)
-
-
-#: Each takes the result of a check, the document with its version, a selection, and True if edits may name a version.
-_FUNCTIONS = ((types.CodeActionKind.QuickFix, _quick_fixes),)
-
-#: The kind of those that need no check.
-_REWRITES = types.CodeActionKind.RefactorRewrite
+#: What the findings of a check offer, and what needs no check.
+_FIXES, _REWRITES = types.CodeActionKind.QuickFix, types.CodeActionKind.RefactorRewrite
 
 
 def register(server: Server) -> None:
@@ -32,29 +21,22 @@ def register(server: Server) -> None:
 
     @server.feature(
         types.TEXT_DOCUMENT_CODE_ACTION,
-        types.CodeActionOptions(
-            code_action_kinds=[*(kind for kind, _ in _FUNCTIONS), _REWRITES], resolve_provider=True
-        ),
+        types.CodeActionOptions(code_action_kinds=[_FIXES, _REWRITES], resolve_provider=True),
     )
     async def code_action(params: types.CodeActionParams) -> list[types.CodeAction]:
-        functions = [function for kind, function in _FUNCTIONS if _is_wanted(kind, params.context.only)]
         rewrites = _is_wanted(_REWRITES, params.context.only)
         rewritten = [action for offered in server.rewritings if rewrites for action in await offered(params)]
-        if not functions:
+        if not _is_wanted(_FIXES, params.context.only):
             return rewritten
         uri = params.text_document.uri
         buffer = server.buffers.open.get(uri)
         version = buffer.version if buffer is not None else None
 
         def find(analysis: Analysis) -> list[types.CodeAction]:
-            of_workspace = server.client_capabilities.workspace
-            edits = of_workspace.workspace_edit if of_workspace is not None else None
-            with_versions = bool(edits is not None and edits.document_changes)
-            return [
-                action
-                for function in functions
-                for action in function(analysis, uri, version, params.range, with_versions)
-            ]
+            from polarcheck.editor.actions import actions
+            from polarcheck.editor.workspace_edits import names_versions
+
+            return actions(analysis, uri, version, params.range, names_versions(server))
 
         none: list[types.CodeAction] = []
         return [*await server.ask(uri, find, none, soon=True), *rewritten]

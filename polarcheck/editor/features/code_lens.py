@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from lsprotocol import types
+from pygls.capabilities import get_capability
 
 if TYPE_CHECKING:
     from polarcheck.editor.analysis import Analysis
@@ -25,9 +26,7 @@ def register(server: Server) -> None:
         return await server.ask(params.text_document.uri, find, [])
 
     def refresh(buffer: Buffer, analysis: Analysis) -> None:
-        of_workspace = server.client_capabilities.workspace
-        lens = of_workspace.code_lens if of_workspace is not None else None
-        if lens is not None and lens.refresh_support:
+        if get_capability(server.client_capabilities, "workspace.code_lens.refresh_support"):
             server.workspace_code_lens_refresh(None)
 
     server.published.append(refresh)

@@ -6,6 +6,7 @@ import contextlib
 from typing import TYPE_CHECKING, Any
 
 from lsprotocol import types
+from pygls.capabilities import get_capability
 
 if TYPE_CHECKING:
     from polarcheck.editor.analysis import Analysis
@@ -32,8 +33,7 @@ def register(server: Server) -> None:
     async def configure(settings: Any = None) -> None:
         """Take the settings that the editor has sent, or ask it for them."""
         section = settings.get(_SECTION) if isinstance(settings, dict) else None
-        of_workspace = server.client_capabilities.workspace
-        if section is None and of_workspace is not None and of_workspace.configuration:
+        if section is None and get_capability(server.client_capabilities, "workspace.configuration"):
             request = types.ConfigurationParams([types.ConfigurationItem(section=_SECTION)])
             with contextlib.suppress(Exception):  # an editor that does not answer has no settings
                 section = next(iter(await server.workspace_configuration_async(request)), None)
@@ -41,9 +41,7 @@ def register(server: Server) -> None:
             refresh()
 
     def refresh() -> None:
-        of_workspace = server.client_capabilities.workspace
-        of_hints = of_workspace.inlay_hint if of_workspace is not None else None
-        if of_hints is not None and of_hints.refresh_support:
+        if get_capability(server.client_capabilities, "workspace.inlay_hint.refresh_support"):
             server.workspace_inlay_hint_refresh(None)
 
     def published(buffer: Buffer, analysis: Analysis) -> None:

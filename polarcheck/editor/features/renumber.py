@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from lsprotocol import types
+from pygls.capabilities import get_capability
 from pygls.exceptions import JsonRpcException
 
 if TYPE_CHECKING:
@@ -64,7 +65,6 @@ def register(server: Server) -> None:
 
 
 def _can_resolve(server: Server) -> bool:
-    of_text = server.client_capabilities.text_document
-    of_actions = of_text.code_action if of_text is not None else None
-    resolved = of_actions.resolve_support if of_actions is not None else None
-    return bool(resolved is not None and "edit" in resolved.properties and of_actions and of_actions.data_support)
+    client = server.client_capabilities
+    resolved = get_capability(client, "text_document.code_action.resolve_support.properties", ())
+    return "edit" in resolved and bool(get_capability(client, "text_document.code_action.data_support"))
