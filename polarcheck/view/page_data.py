@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from polarcheck.foundation.errors import counted
 from polarcheck.foundation.finding import UNREADABLE
-from polarcheck.reports import SEVERITIES
 from polarcheck.reports.pages.resting import resting
-from polarcheck.reports.text import first_sentence, verdict
+from polarcheck.reports.text import first_sentence, severities, verdict
 from polarcheck.view.picture_data import Drawn, FindingLocation, FindingPicture, Picture, key_of
 
 if TYPE_CHECKING:
@@ -43,11 +43,8 @@ def picture(file: FileReport, background: Background) -> Picture:
 def _summary(file: FileReport) -> str:
     if file.verdict == UNREADABLE:
         return file.reason or ""
-    severities = [finding.severity for finding in file.findings]
-    facts = [counted(severities.count(severity), severity) for severity in SEVERITIES if severity in severities] or [
-        "no findings"
-    ]
-    return ", ".join([*facts, counted(file.sections, "polar section"), counted(file.blocks, "block")])
+    findings = severities(Counter(finding.severity for finding in file.findings))
+    return ", ".join([findings, counted(file.sections, "polar section"), counted(file.blocks, "block")])
 
 
 def _head(file: FileReport, drawn: Drawn, background: Background) -> Iterator[tuple[str, str]]:

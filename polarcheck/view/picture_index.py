@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Iterable, Sequence
 from html import escape
 from typing import TYPE_CHECKING, NamedTuple
@@ -10,8 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from polarcheck.foundation.errors import counted
 from polarcheck.foundation.finding import UNREADABLE
 from polarcheck.program.reading.excerpt import visible
-from polarcheck.reports import SEVERITIES
-from polarcheck.reports.text import verdict
+from polarcheck.reports.text import severities, verdict
 from polarcheck.view.plotly_script import FILE_NAME
 
 if TYPE_CHECKING:
@@ -55,9 +55,8 @@ def entry(file: FileReport, page: str) -> Entry:
     """Return the entry of a file."""
     if file.verdict == UNREADABLE:
         return Entry(page, file.path, file.verdict, verdict(file), visible(file.reason or ""), 0)
-    severities = [finding.severity for finding in file.findings]
-    facts = [counted(severities.count(severity), severity) for severity in SEVERITIES if severity in severities]
-    return Entry(page, file.path, file.verdict, verdict(file), ", ".join(facts) or "none", file.sections)
+    findings = severities(Counter(finding.severity for finding in file.findings)) if file.findings else "none"
+    return Entry(page, file.path, file.verdict, verdict(file), findings, file.sections)
 
 
 def page_names(paths: Iterable[str]) -> list[str]:
