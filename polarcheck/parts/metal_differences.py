@@ -55,14 +55,24 @@ class Feature(NamedTuple):
     """
     A closed shape that a job asks for.
 
-    number: of the part in the job. curve: of the curve in its drawing. area: what it encloses (shapely). is_pocket: the
-    part stands around it. may_be_absent: another tool may make it. z: its depth. radius: R that mills it. tolerance:
-    allowed difference. certain: up to this distance from the axis there is metal before milling. most: beyond it there
-    is none, inf where nobody knows. excess_is_judged: all that may clear something there is known. is_bar_known: what
-    is far from the walls is compared as well. is_solid: there is no hole where it is to be cleared. cuts: bool per cut,
-    those in its sections. own_cuts: those without the contours of other parts. pockets: those that it lies in, by their
-    number and curve; `differences` finds them. beyond: area farther from the axis than `certain` in which there is
-    metal for certain; None for none. rounds: the round of its drawing beside all cuts; None for a shape.
+    number: the number of the part in the job.
+    curve: the number of the curve in its drawing.
+    area: what it encloses (shapely).
+    is_pocket: the part stands around it.
+    may_be_absent: another tool may make it.
+    z: its depth [mm].
+    radius: R of the tool that mills it [mm].
+    tolerance: the allowed difference [mm].
+    certain: up to this distance from the axis there is metal before milling [mm].
+    most: beyond this distance there is none, inf where that is not known [mm].
+    excess_is_judged: all that may clear something there is known.
+    is_bar_known: metal far from the walls is compared as well.
+    is_solid: there is no hole where it is to be cleared.
+    cuts: bool per cut, those in its sections.
+    own_cuts: bool per cut, those without the contours of other parts.
+    pockets: the pockets that it lies in, by their number and curve; `differences` finds them.
+    beyond: the area farther from the axis than `certain` in which there is metal for certain; None for none.
+    rounds: the round of its drawing and all cuts; None for a shape.
     """
 
     number: int
@@ -89,10 +99,12 @@ class AreaDifference(NamedTuple):
     """
     How the metal differs from a feature.
 
-    proud: metal that should be gone. deep: metal that is missing. proud_row, deep_row: the row of the cut that comes
-    nearest, -1 for none. off: how far the wall that is made is off the one that is asked for [mm]. island: what stands
-    in the middle of a pocket along whose walls alone the program mills: it may be gone before. is_made: cuts come near
-    to its wall, by the tolerance.
+    proud: metal that should be gone.
+    deep: metal that is missing.
+    proud_row, deep_row: the row of the cut that comes nearest, -1 for none.
+    off: the distance of the machined wall from the nominal one [mm].
+    island: metal in the middle of a pocket of which the program mills the walls alone: it may be gone before.
+    is_made: cuts come within the tolerance of its wall.
     """
 
     proud: Extreme
@@ -112,7 +124,10 @@ class AreaDifference(NamedTuple):
 def differences(features: Sequence[Feature], cuts: Cuts) -> list[AreaDifference]:
     """The difference of each feature. Raises TooHardError where areas are too many."""
     cleared = _Cleared(cuts)
-    is_there = [not shape.may_be_absent or _is_made(_off_wall(shape, cleared), shape.radius / 2) for shape in features]
+    is_there = [
+        not shape.may_be_absent or _is_made(_off_wall(shape, cleared.at_depth_of(shape)), shape.radius / 2)
+        for shape in features
+    ]
     pockets = [shape for shape in itertools.compress(features, is_there) if shape.is_pocket]
     features = [shape._replace(pockets=_pockets_around(shape, pockets)) for shape in features]
     present = [*itertools.compress(features, is_there)]
@@ -137,10 +152,13 @@ class _Cleared:
             self._known[key] = cleared_by(cuts.curves, cuts.radius) if len(cuts) else empty()
         return self._known[key]
 
+    def at_depth_of(self, feature: Feature) -> Any:
+        return self.by(self.cuts.low <= feature.z + SAME_Z)
+
 
 def _difference(feature: Feature, features: Sequence[Feature], cleared: _Cleared) -> AreaDifference:
     cuts, tolerance = cleared.cuts, _allowed(feature)
-    off = _off_wall(feature, cleared)
+    off = _off_wall(feature, cleared.at_depth_of(feature))
     proud, island = NOTHING, NOTHING
     if feature.excess_is_judged:
         proud, island = _excess(feature, features, cleared)
@@ -159,7 +177,7 @@ def _allowed(feature: Feature) -> float:
 def _excess(feature: Feature, features: Sequence[Feature], cleared: _Cleared) -> tuple[Extreme, Extreme]:
     """Metal at the depth of a feature that should be gone; and what stands in a pocket that is not cleared here."""
     tolerance = _allowed(feature)
-    gone = cleared.by(cleared.cuts.low <= feature.z + SAME_Z)
+    gone = cleared.at_depth_of(feature)
     around = _parts_around(feature, features)
     metal = areas.union(disc(feature.certain), around)
     if feature.beyond is not None:
@@ -244,8 +262,8 @@ def _without_shared(lacks: Any, feature: Feature, features: Sequence[Feature], c
     return joined([*pieces])
 
 
-def _off_wall(feature: Feature, cleared: _Cleared) -> Floats:
-    gone = cleared.by(cleared.cuts.low <= feature.z + SAME_Z)
+def _off_wall(feature: Feature, gone: Any) -> Floats:
+    """The distances of points of its wall from the edge of a cleared area [mm]."""
     return off_wall(gone, feature.area, feature.radius, feature.certain - 2 * _CHORDS, feature.is_pocket)
 
 
@@ -322,8 +340,7 @@ def nearest_row(cuts: Cuts, chosen: Mask, point: complex) -> int:
 
 def distance_of_wall(feature: Feature, cuts: Cuts) -> float:
     """The mean distance from the wall of a feature to the edge of what cuts clear [mm]; inf where they reach none."""
-    gone = cleared_by(cuts.curves, cuts.radius) if len(cuts) else empty()
-    off = off_wall(gone, feature.area, feature.radius, feature.certain - 2 * _CHORDS, feature.is_pocket)
+    off = _off_wall(feature, cleared_by(cuts.curves, cuts.radius) if len(cuts) else empty())
     return float(off.mean()) if len(off) else np.inf
 
 

@@ -15,7 +15,7 @@ from polarcheck.program.machines.machine import Machine, OwnMachine
 if TYPE_CHECKING:
     from polarcheck.rules.hit import Hit
 
-#: M codes that are named where any of them may be the one.
+#: The most M codes that are named where each of them may be meant.
 _NAMED = 3
 
 
@@ -25,14 +25,14 @@ def place(machine: Machine, key: str) -> str:
     return f"{key} in {file}"
 
 
+def option_or_place(machine: Machine, key: str) -> str:
+    """The place for a single number: for a machine of ours the option that gives it, which is shorter."""
+    return place(machine, key) if isinstance(machine, OwnMachine) else f"--set {key}=..."
+
+
 def is_chosen(machine: Machine, job: Job) -> bool:
     """Return True if somebody has chosen the machine: it is not the one that is taken where nobody does."""
     return job.machine is not None or machine.title != profiles.load(profiles.DEFAULT).machine.title
-
-
-def option_or_place(machine: Machine, key: str) -> str:
-    """The same for a single number: for a machine of ours the option that gives it is shorter."""
-    return place(machine, key) if isinstance(machine, OwnMachine) else f"--set {key}=..."
 
 
 def unlisted_codes(trace: Trace, spindles: Spindles, row: int) -> str:
@@ -49,13 +49,17 @@ def _code_and_line(trace: Trace, word: int) -> str:
     run, blocks = trace.run, trace.blocks
     row = int(run.row[word])
     code = f"M{run.words.value[word]:g}"
-    listed = (one.partition(" ") for one in trace.machine.m_codes.with_words)
-    beside = sorted({other[0] for first, _, other in listed if first == code})
-    told = [f"{letter}{blocks.word(letter)[row]:g}" for letter in beside if blocks.has(letter)[row]]
-    return f"{' '.join((code, *told))} of line {int(blocks.line[row])}"
+    listed = (entry.partition(" ") for entry in trace.machine.m_codes.with_words)
+    letters = sorted({word[0] for listed_code, _, word in listed if listed_code == code})
+    words = [f"{letter}{blocks.word(letter)[row]:g}" for letter in letters if blocks.has(letter)[row]]
+    return f"{' '.join((code, *words))} of line {int(blocks.line[row])}"
 
 
 def or_by(hit: Hit, spindles: Spindles, effect: str, key: str) -> str:
-    """Where to add an M code above a hit that may have done it; empty where the program has none that is not known."""
+    """
+    Return where to add an M code above a hit that may have had an effect; empty where each M code is in a list.
+
+    effect: as `starts it`. key: the list of the machine.
+    """
     codes = unlisted_codes(hit.trace, spindles, hit.row)
     return f"; if {codes} {effect}, add that to {place(hit.trace.machine, key)}" if codes else ""

@@ -14,12 +14,12 @@ from polarcheck.geometry.shapes.shape import SAME
 #: Fewer shapes than these are no series.
 _FEWEST = 3
 #: More lines than these are given by the first and the last one.
-_IN_A_LIST = 8
+_MOST_LISTED = 8
 #: Steps of C that differ by less are equal [deg].
 _SAME_STEP = 1e-3
 #: What a turn around the axis changes.
 _TURNING = ("turned", "center_x", "center_c")
-#: Shapes that are the same after half a turn; a part with others beside the axis is turned by its whole angle.
+#: Shapes that half a turn leaves the same; regular polygons repeat by their sides, all others after a whole turn.
 _HALF_TURN = ("slot", "rectangle")
 
 
@@ -46,36 +46,36 @@ def _continues(series: Sequence[MadeShape], shape: MadeShape) -> bool:
     return len(series) == 1 or abs(step - (_step(*series[-2:]) or 0.0)) <= _SAME_STEP
 
 
-def _step(one: MadeShape, other: MadeShape) -> float | None:
-    """The angle of C from one to the other [deg], -180 to 180; None where it is not known or 0."""
-    if len(one.sections) > 1 or len(other.sections) > 1:
+def _step(first: MadeShape, second: MadeShape) -> float | None:
+    """The angle of C from the first to the second [deg], -180 to 180; None where it is not known or 0."""
+    if len(first.sections) > 1 or len(second.sections) > 1:
         return None
-    angle, next_angle = one.sections[0].angle, other.sections[0].angle
+    angle, next_angle = first.sections[0].angle, second.sections[0].angle
     if angle is None or next_angle is None:
         return None
     return 180 - (180 - next_angle + angle) % 360 or None
 
 
-def _is_turned_by(one: MadeShape, other: MadeShape, step: float) -> bool:
-    """The other is the same shape to the same depths, turned around the axis."""
-    if _but_turned(one) != _but_turned(other) or one.values.keys() != other.values.keys():
+def _is_turned_by(first: MadeShape, second: MadeShape, step: float) -> bool:
+    """The second shape is the first one to the same depths, turned around the axis by a step [deg]."""
+    values, turned = first.values, second.values
+    if _without_turn(first) != _without_turn(second) or values.keys() != turned.keys():
         return False
-    values, turned = one.values, other.values
     if any(abs(values[name] - turned[name]) > 2 * SAME for name in values if name not in (*_TURNING, "area")):
         return False
     if "turned" in values:
-        period = 180 if one.shape in _HALF_TURN else 360 / values.get("sides", 1)
+        period = 180 if first.shape in _HALF_TURN else 360 / values.get("sides", 1)
         off = (turned["turned"] - values["turned"] - step + period / 2) % period - period / 2
         # Words with three digits turn a side of some millimetres by some thousandths of a degree.
         if abs(off) > 0.1:
             return False
     if "center_x" not in values:
-        return one.shape == "keyway"
+        return first.shape == "keyway"
     center, turned_center = (complex(value["center_x"], value["center_c"]) for value in (values, turned))
     return bool(abs(center * np.exp(1j * np.radians(step)) - turned_center) <= 2 * SAME)
 
 
-def _but_turned(shape: MadeShape) -> tuple[object, ...]:
+def _without_turn(shape: MadeShape) -> tuple[object, ...]:
     """What equal shapes of a series have in common, beside their values."""
     remarks = shape.text.split("; ")[1:]
     # The last one says at which C the section begins.
@@ -97,7 +97,7 @@ def _joined(series: Sequence[MadeShape]) -> MadeShape:
     first = series[0]
     # A loop or a called program begins its sections in one line.
     lines = list(dict.fromkeys(str(shape.line) for shape in series))
-    listed = ", ".join(lines) if len(lines) <= _IN_A_LIST else f"{lines[0]} to {lines[-1]}"
+    listed = ", ".join(lines) if len(lines) <= _MOST_LISTED else f"{lines[0]} to {lines[-1]}"
     name, _, rest = f"{first.shape}".partition(" ")
     plural = f"{name}{'es' if name.endswith('s') else 's'} {rest}".rstrip()
     step = abs(sum(_step(*pair) or 0.0 for pair in pairwise(series))) / (len(series) - 1)
