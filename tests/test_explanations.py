@@ -553,3 +553,23 @@ def told_of_small_cutter(text: str) -> list[tuple[str, int]]:
     """What is said in which line, with a cutter of 10 mm."""
     findings = report_of(text, "fanuc-30i", "1:radius=5").findings
     return [(finding.message, finding.line) for finding in findings if finding.severity != "note"]
+
+
+@pytest.mark.ci
+@looped(
+    ("contour", "rights", "wrongs", "words"),
+    [
+        (SMALL, ("C17.5", "X-35. C-20."), ("C71.5", "X-35. C-2."), ("C17.5", "C-20.")),
+        (SMALL, ("X35. C20.", "C-17.5"), ("X53. C20.", "C-1.75"), ("X35.", "C-17.5")),
+    ],
+)
+def test_two_words_that_make_it_symmetric_together_are_both_named(
+    contour: list[str], rights: tuple[str, ...], wrongs: tuple[str, ...], words: tuple[str, ...]
+) -> None:
+    replaced = dict(zip(rights, wrongs, strict=True))
+    slipped = [replaced.get(line, line) for line in contour]
+    ramp = "G1 X76. C0. F1500"
+    lines = [*HEAD[:-2], ramp, HEAD[-1], *slipped, "G40 X76.", *TAIL[1:]]
+    said_there = {(lines[line - 1], message) for message, line in told_of_small_cutter("\n".join(lines) + "\n")}
+    assert {line for line, _ in said_there} == {*wrongs}
+    assert all(any(f"with {word}" in message for _, message in said_there) for word in words)

@@ -10,7 +10,16 @@ import msgspec
 import numpy as np
 
 from polarcheck.columns.contour.correction import Correction
-from polarcheck.columns.contour.likely_edits import AS_LIKELY, Likely, all_compared, correction_by, likely_outlines
+from polarcheck.columns.contour.likely_edits import (
+    AS_LIKELY,
+    Compared,
+    Likely,
+    all_compared,
+    correction_by,
+    likely_outlines,
+    likely_pairs,
+)
+from polarcheck.columns.contour.loop_edits import outlines_of, with_edit
 from polarcheck.columns.contour.plane_loops import PlaneLoop
 from polarcheck.columns.contour.written_loop import AxisWords, WrittenLoop, written_loop
 from polarcheck.columns.trace import Trace
@@ -33,6 +42,8 @@ _ODD_OF = 6
 _MOST_TRIALS, _ENDS, _GAPS = 80, 3, 3
 #: Edits that are looked at; how much less they must leave to chance, without and with symmetry; blocks of such a path.
 _MOST_EDITS, _LEAST_GAIN, _GAIN_ALONE, _FEWEST_BLOCKS = 16, 0.5, 3.8, 6
+#: Pairs of edits that are looked at, and the gain of both together.
+_MOST_PAIRS, _GAIN_OF_TWO = 4, 4.0
 #: The gain of a slip that is often made, and makes all arcs tangent.
 _GAIN_IF_COMMON = 3.0
 #: Sine of the turn at a point within a straight side.
@@ -81,7 +92,7 @@ def corrections_of(
     row, word, key = search.content
     if key not in known:
         best = search.best()
-        symmetric = search.of_two_corners() if best is None else (best,)
+        symmetric = (search.of_two_corners() or search.of_two_words()) if best is None else (best,)
         known[key] = Corrections(symmetric, None if symmetric else search.likely).moved(-row, -word)
     return known[key].moved(row, word)
 
@@ -201,13 +212,17 @@ class _Search:
 
     # ---- one edit ----
 
+    @cached_property
+    def _compared(self) -> Compared:
+        return all_compared(self.trace, self._written)
+
     def _of_edits(self) -> Correction | None:
         """The likeliest edit that makes the contour symmetric; where one in another block is as likely, with that."""
         # Where sides are divided, the number of different lengths tells nothing.
         may_be_likely = not _are_within_sides(self.loop.point, self.loop.turns).any()
         found: list[tuple[Likely, Correction, Symmetry]] = []
         best = -1
-        for likely, outline in likely_outlines(all_compared(self.trace, self._written), _MOST_EDITS, _LEAST_GAIN):
+        for likely, outline in likely_outlines(self._compared, _MOST_EDITS, _LEAST_GAIN):
             if best >= 0 and found[best][0].gain - likely.gain > AS_LIKELY:
                 break
             edit = likely.edit
@@ -305,6 +320,26 @@ class _Search:
                     symmetry = self.loop.symmetry(one.point + two.point - self.loop.point)
                     if symmetry is not None and symmetry.is_regular and one.at != two.at:
                         return self._both(one, two, _becomes(symmetry)), self._both(two, one, _becomes(symmetry))
+        return ()
+
+    def of_two_words(self) -> tuple[Correction, ...]:
+        """The two words with which the contour comes again in turns and mirrors."""
+        for pair in likely_pairs(self.trace, self._compared, _MOST_PAIRS, _LEAST_GAIN):
+            one, two = pair
+            is_of_words = all(likely.edit.kind == "word" for likely in pair)
+            if not is_of_words or one.gain + two.gain < _GAIN_OF_TWO:
+                continue
+            outline = outlines_of(with_edit(self._written, one.edit), [two.edit])
+            point, turns, radius, to_center = (part[1] for part in outline)
+            edited = msgspec.structs.replace(self.loop, turns=turns, radius=radius, to_center=to_center)
+            symmetry = edited.symmetry(point)
+            if symmetry is None or symmetry.order <= _HALF_TURN or not symmetry.mirrored:
+                continue
+            if symmetry.corners + symmetry.arcs >= _CORNERS:
+                first, second = (correction_by(likely, self._row(likely.edit.corner)) for likely in pair)
+                line, becomes = int(self.trace.blocks.line[second.row]), _becomes(symmetry)
+                remedy = f"{first.remedy}, and {second.remedy} in line {line},"
+                return first._replace(remedy=remedy, becomes=becomes), second._replace(becomes=becomes)
         return ()
 
     def _slip(self, corner: int, place: complex) -> _Trial | None:

@@ -136,8 +136,14 @@ def _likely(compared: Compared, number: int) -> Likely:
     return Likely(edits[number - 1], float(gain[number]), _becomes(chances, number), closes, smooths, is_clear)
 
 
-def likely_pairs(trace: Trace, compared: Compared, most: int) -> list[tuple[Likely, Likely]]:
-    """The pairs of edits of different words that leave least to chance, each of which does so beside the other one."""
+def likely_pairs(
+    trace: Trace, compared: Compared, most: int, least_gain: float = LEAST_IF_WHOLE
+) -> list[tuple[Likely, Likely]]:
+    """
+    The pairs of edits of different words that leave least to chance, each of which does so beside the other one.
+
+    least_gain: of the second edit, beside the first one.
+    """
     worse = {edit[:4] for edit, gain in zip(compared.edits, compared.gain[1:], strict=True) if gain < _LEAST_ALONE}
     found: dict[tuple[str, ...], tuple[float, Likely, Likely]] = {}
     for number in _likeliest(compared, _FIRST_EDITS, LEAST_IF_WHOLE, is_one_of_two=True):
@@ -146,7 +152,7 @@ def likely_pairs(trace: Trace, compared: Compared, most: int) -> list[tuple[Like
             continue
         other = with_edit(compared.loop, first.edit)
         beside = _compared(other, (edit for edit in edits_of(trace, other) if edit[:4] not in worse))
-        for second in (_likely(beside, at) for at in _likeliest(beside, _SECOND_EDITS, LEAST_IF_WHOLE)):
+        for second in (_likely(beside, at) for at in _likeliest(beside, _SECOND_EDITS, least_gain)):
             if second.edit.kind in _OF_BLOCKS or second.edit.corner == first.edit.corner:
                 continue
             one, two = sorted((first, second), key=lambda likely: likely.edit.corner)
