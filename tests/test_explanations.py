@@ -419,6 +419,22 @@ def test_a_code_that_one_of_the_passes_lacks_is_told_once() -> None:
     assert "polar-switched-in-offset-mode" in [one.rule for one in found[0].follows]
 
 
+def test_an_arc_before_the_line_that_leads_to_it_is_one_finding() -> None:
+    """Behind it two lines follow, so that its code is in force in the second one."""
+    cross = [
+        *("G41 X38. C0 F200", "C-7.", "X25.", "G3 X14. C-12.5 I0 J-5.5", "G1 C-19.", "X-14.", "C-12.5"),
+        *("G3 X-25. C-7. I-5.5 J0", "G1 X-38.", "C7.", "X-25.", "G3 X-14. C12.5 I0 J5.5", "G1 C19.", "X14."),
+        *("C12.5", "G3 X25. C7. I5.5 J0", "G1 X38.", "C0"),
+    ]
+    lines = [*HEAD, *cross, *TAIL]
+    assert report_of("\n".join(lines), "fanuc", "1:radius=5").findings == []
+    arc = lines.index("G3 X-14. C12.5 I0 J5.5")
+    lines[arc : arc + 2] = reversed(lines[arc : arc + 2])
+    findings = report_of("\n".join(lines), "fanuc", "1:radius=5").findings
+    assert [(one.rule, one.line) for one in findings] == [("nearly-regular-contour", arc + 1)]
+    assert {one.rule for one in findings[0].follows} >= {"arc-end-off-circle", "arc-without-center"}
+
+
 def test_a_ramp_that_is_skipped_is_told_by_its_sign_of_block_skip() -> None:
     hexagon = ["C11.547", "X0 C23.094", "X-40. C11.547", "C-11.547", "X0 C-23.094", "X40. C-11.547", "C0"]
     contour = ["Z-4. F300", "G42 X40. F200", *hexagon, "G40 X60. F1500", "Z2."]

@@ -14,8 +14,8 @@ import numpy as np
 from polarcheck.checking.engine import Engine
 from polarcheck.columns.contour.loop_edits import Edit
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Rows, side_by_side
-from polarcheck.foundation.states import Side
+from polarcheck.foundation.arrays import Rows, is_among, side_by_side
+from polarcheck.foundation.states import Motion, Side
 from polarcheck.rules.editing import Replace, content_of, is_head, is_plain, separator, without, words_of
 
 #: Moves of a path from either end within which a finding may come from the ramp there.
@@ -149,6 +149,17 @@ def unskipped(trace: Trace, own: Rows) -> Iterator[list[CodeEdit]]:
             edit = Edit("code", 0, (), "", "a block before it is skipped", 0.0, how=how)
             sign = len(content) - len(content[1:].lstrip("0123456789"))
             yield [CodeEdit(row, edit, [(start, start + sign, "")])]
+
+
+def before_arcs(trace: Trace, own: Rows) -> Iterator[list[CodeEdit]]:
+    """A line exchanged with the arc behind it, whose code is still in force in a block that says no center."""
+    motion, path = trace.axes.motion, trace.path
+    rows = np.flatnonzero(is_among(motion, (Motion.CW, Motion.CCW)) & path.travels & np.isnan(path.center))
+    for row in rows[(rows > own[0] + 1) & (rows <= own[-1] + 2)].tolist():
+        line, arc = row - 2, row - 1
+        if motion[line] == Motion.LINE and motion[arc] == motion[row] and _are_beside(trace, line, arc):
+            order = Edit("order", 0, (), "", "it stands before the block that should be before it", 0.0)
+            yield [CodeEdit(line, order, exchanged(trace, line, arc))]
 
 
 def as_in_passes(engine: Engine, own: Rows) -> Iterator[list[CodeEdit]]:

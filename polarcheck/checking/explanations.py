@@ -18,6 +18,7 @@ import numpy as np
 from polarcheck.checking.code_edits import (
     CodeEdit,
     as_in_passes,
+    before_arcs,
     exchanged,
     missing_steps,
     ramp_edits,
@@ -209,7 +210,7 @@ class _Search:
         those of other paths with a symptom, where another one may come, as by a comparison of passes.
         """
         of_code = chain.from_iterable(
-            search(self.trace, loop.row[1:]) for search in (unskipped, unneeded_sides, missing_steps)
+            search(self.trace, loop.row[1:]) for search in (unskipped, unneeded_sides, missing_steps, before_arcs)
         )
         whole = self._by_codes(of_code, own, others, 1)
         partly: list[_Explained] = []
