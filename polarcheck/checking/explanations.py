@@ -232,9 +232,9 @@ class _Search:
                 whole.append(found)
             elif found is not None and likely.is_clear:
                 (shows_more if found.left - self.symptoms else partly).append(found)
-        whole = whole or self._by_codes(as_in_passes(self.engine, loop.row[1:]), own, others, _RULES_OF_CODE)
         # Increments that are read as positions make a path of which little can be told.
         whole = whole or self._by_codes(unneeded_steps(self.trace, loop.row[1:]), own, others, 1)
+        whole = whole or self._by_codes(as_in_passes(self.engine, loop.row[1:]), own, others, _RULES_OF_CODE)
         # A path that two numbers make regular has no code at the wrong place.
         is_of_two = sum(rule == REPORTS and line in own for rule, line in self.symptoms) > 1
         is_of_code = not is_of_two and len(rules) >= _RULES_OF_CODE and len(loop.turns) >= _BLOCKS_OF_CODE
