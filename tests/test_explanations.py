@@ -435,6 +435,28 @@ def test_an_arc_before_the_line_that_leads_to_it_is_one_finding() -> None:
     assert {one.rule for one in findings[0].follows} >= {"arc-end-off-circle", "arc-without-center"}
 
 
+def test_arcs_of_the_other_sense_meet_nowhere_and_are_told_once() -> None:
+    arcs = ["C11.013", "G2 X-35. C0 I-13.6 J-11.013", "X27.2 C-11.013 I17.5 J0", "G1 C0"]
+    lines = [*HEAD, "G42 X27.2 C0 F200", *arcs, *TAIL]
+    (finding,) = report_of(
+        "\n".join(lines), "mazak-eia", "1:radius=2.5", job={}, only=["no-offset-intersection"]
+    ).findings
+    assert lines[finding.line - 1] == arcs[0]
+
+
+def test_a_cancel_that_is_lost_behind_an_arc_is_told_once() -> None:
+    pocket = ["G41 X40. C0 F200", "G3 X-40. R20.", "X40. R20.", "G40 G1 X10. F1500"]
+    wider = ["G41 X44. C0 F200", "G3 X-44. R22.", "X44. R22.", "G40 G1 X10. F1500"]
+    lines = [*HEAD[:4], "G1 X10. F1500", "Z-4. F300", *pocket, *wider, "Z2.", *TAIL[2:]]
+    assert "side-repeated-in-offset-mode" not in [
+        one.rule for one in report_of("\n".join(lines), "fanuc", "1:radius=2").findings
+    ]
+    lines.remove(pocket[-1])
+    found = report_of("\n".join(lines), "fanuc", "1:radius=2").findings
+    assert [one.rule for one in found if one.severity != "note"] == ["side-repeated-in-offset-mode"]
+    assert "arc-without-center" in [one.rule for one in found[0].follows]
+
+
 def test_a_ramp_that_is_skipped_is_told_by_its_sign_of_block_skip() -> None:
     hexagon = ["C11.547", "X0 C23.094", "X-40. C11.547", "C-11.547", "X0 C-23.094", "X40. C-11.547", "C0"]
     contour = ["Z-4. F300", "G42 X40. F200", *hexagon, "G40 X60. F1500", "Z2."]

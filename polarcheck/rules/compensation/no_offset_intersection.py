@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     values=("radius",),
     worse=("radius",),
     gouges=True,
+    once="loop",
     doubts=(("metal", "narrow loop"),),
     follows={"loop": ("start-up-shorter-than-radius", "cancel-shorter-than-radius")},
     is_symptom=True,

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     once="motion",
     subject="",
     doubts=END_IN_DOUBT,
-    follows={"block": ("arc-off-polar-plane",)},
+    follows={"block": ("arc-off-polar-plane", "side-repeated-in-offset-mode")},
     is_symptom=True,
     only_with=(ARC,),
 )
