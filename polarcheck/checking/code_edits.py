@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from polarcheck.checking.engine import Engine
-from polarcheck.columns.contour.loop_edits import Edit
+from polarcheck.columns.contour.loop_edits import Edit, order_edit
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Rows, is_among, side_by_side
 from polarcheck.foundation.states import Motion, Side
@@ -74,10 +74,9 @@ def _around(trace: Trace, word: int) -> Iterator[list[CodeEdit]]:
             slip = f"it stands a block too {'late' if other < row else 'early'}"
             how = f"with {code} not here but in line {int(trace.blocks.line[other])}"
             moved = [_at_head(trace, other, code), *without(trace.run, row, [word])]
-            order = Edit("order", 0, (), "", "it stands before the block that should be before it", 0.0)
             yield [
                 CodeEdit(row, Edit("code", 0, (word,), code, slip, 0.0, how=how), moved),
-                CodeEdit(first, order, exchanged(trace, first, second)),
+                CodeEdit(first, order_edit(0, 0.0), exchanged(trace, first, second)),
             ]
 
 
@@ -158,8 +157,7 @@ def before_arcs(trace: Trace, own: Rows) -> Iterator[list[CodeEdit]]:
     for row in rows[(rows > own[0] + 1) & (rows <= own[-1] + 2)].tolist():
         line, arc = row - 2, row - 1
         if motion[line] == Motion.LINE and motion[arc] == motion[row] and _are_beside(trace, line, arc):
-            order = Edit("order", 0, (), "", "it stands before the block that should be before it", 0.0)
-            yield [CodeEdit(line, order, exchanged(trace, line, arc))]
+            yield [CodeEdit(line, order_edit(0, 0.0), exchanged(trace, line, arc))]
 
 
 def as_in_passes(engine: Engine, own: Rows) -> Iterator[list[CodeEdit]]:

@@ -168,10 +168,9 @@ def _lines(finding: Finding) -> set[int]:
 class _Search:
     def __init__(self, engine: Engine, number: int, told: set[str]) -> None:
         self.engine, self.trace, self.number = engine, engine.trace, number
-        rules = [rule for rule in engine.rules.values() if not rule.of_text and rule.over == "rows"]
-        # A rule that only notes is told more gravely where others follow from it.
-        graves = (SEVERITIES[rule.level(engine.severities)] >= WARNING or rule.name in told for rule in rules)
-        self.rules = [rule for rule, is_grave in zip(rules, graves, strict=True) if is_grave]
+        rules = (rule for rule in engine.rules.values() if not rule.of_text and rule.over == "rows")
+        # What a rule only notes is a warning or an error where others follow from it.
+        self.rules = [rule for rule in rules if rule.name in told or _warns(engine, rule)]
         self.rows_left = MOST_ROWS
         # What is explained is mended when the next path is tried, which may be compared with it.
         self.mended: list[Replace] = []
@@ -383,6 +382,11 @@ class _Search:
         return lambda rules: frozenset((rule, int(origin[number - 1])) for rule, number in _symptoms(trial, rules))
 
 
+def _warns(engine: Engine, rule: Rule) -> bool:
+    """The findings of a rule are warnings or errors by themselves."""
+    return bool(SEVERITIES[rule.level(engine.severities)] >= WARNING)
+
+
 def _symptoms(engine: Engine, rules: Iterable[Rule]) -> frozenset[_Symptom]:
     """Where these rules fire as warnings or errors."""
     line = engine.trace.blocks.line
@@ -439,7 +443,7 @@ def _may_lead(engine: Engine, finding: Finding, explanation: _Explained) -> bool
     """A finding in the block of the edit may lead: a symptom, or one that names the words of the edit; no mere note."""
     if explanation.likely.edit.kind == "other pass":
         return finding.rule == _COMPARES
-    if SEVERITIES[engine.rules[finding.rule].level(engine.severities)] < WARNING:
+    if not _warns(engine, engine.rules[finding.rule]):
         return False
     needed = str(finding.values.get("word_needed", ""))
     names_none = not needed and finding.rule != REPORTS

@@ -23,7 +23,7 @@ from polarcheck.columns.contour.loop_edits import outlines_of, with_edit
 from polarcheck.columns.contour.plane_loops import PlaneLoop
 from polarcheck.columns.contour.written_loop import AxisWords, WrittenLoop, written_loop
 from polarcheck.columns.trace import Trace
-from polarcheck.columns.words.slips import WORD, Slip, plain_number, slip_of, slips_of
+from polarcheck.columns.words.slips import Slip, parts_of, plain_number, slip_of, slips_of
 from polarcheck.foundation.arrays import Mask, Points, Rows, cached_property
 from polarcheck.geometry.regularity.symmetric_corners import each_once, is_lonely, missing_places, regular_polygons
 from polarcheck.geometry.regularity.symmetry import Symmetry
@@ -298,12 +298,12 @@ class _Search:
                     continue
                 shift = (complex(point[inner] - point[corner]).conjugate() * side).imag / across
                 needed = float(self.trace.run.words.value[word]) + shift / axis.scale[corner]
-                written = WORD.fullmatch("".join(self.trace.run.written(word).split()))
-                slip = written and slip_of(written[2], needed, self.tolerance / axis.scale[corner])
-                if written and slip:
+                address, number = parts_of(self.trace.run.written(word))
+                slip = slip_of(number, needed, self.tolerance / axis.scale[corner])
+                if slip is not None:
                     moved = point.copy()
                     moved[corner] += shift * axis.direction
-                    yield _Trial(corner, word, slip._replace(text=written[1] + slip.text), moved, self.loop)
+                    yield _Trial(corner, word, slip._replace(text=address + slip.text), moved, self.loop)
 
     def of_two_corners(self) -> tuple[Correction, ...]:
         """The two words, each a slip of the pen, whose corners are off the regular polygon of all the others."""
@@ -350,12 +350,8 @@ class _Search:
         if len(words) != 1 or words[0][1] < 0 or words[0][0].is_step[corner]:
             return None
         trial = self._elsewhere(corner, place, words)
-        written, needed = (
-            WORD.fullmatch("".join(text.split())) for text in (self.trace.run.written(words[0][1]), trial.slip.text)
-        )
-        if written is None or needed is None:
-            return None
-        slip = next((slip for slip in slips_of(written[2]) if float(slip.text) == float(needed[2])), None)
+        written, needed = (parts_of(text)[1] for text in (self.trace.run.written(words[0][1]), trial.slip.text))
+        slip = next((slip for slip in slips_of(written) if float(slip.text) == float(needed)), None)
         return None if slip is None else trial._replace(slip=slip._replace(text=trial.slip.text))
 
     def _both(self, first: _Trial, second: _Trial, becomes: str) -> Correction:

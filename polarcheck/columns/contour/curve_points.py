@@ -10,8 +10,8 @@ from polarcheck.columns.contour.correction import Correction
 from polarcheck.columns.contour.written_loop import AxisWords, axis_words
 from polarcheck.columns.trace import Trace
 from polarcheck.columns.words.last_digit import half_of_last_digit
-from polarcheck.columns.words.slips import WORD, Slip, plain_number, slips_of
-from polarcheck.foundation.arrays import Floats, Points, Rows
+from polarcheck.columns.words.slips import Slip, parts_of, plain_number, slips_of
+from polarcheck.foundation.arrays import Floats, Points, Rows, runs
 from polarcheck.foundation.states import Motion
 from polarcheck.geometry.tolerances import ROUNDING
 
@@ -77,12 +77,11 @@ def _curves(trace: Trace) -> _Curves:
     moves = np.flatnonzero(path.travels)
     ramp = (compensation.starts_up | compensation.cancels)[moves]
     is_line = (trace.axes.motion[moves] == Motion.LINE) & path.on_plane[moves] & ~ramp & ~np.isnan(path.end[moves])
-    first = np.flatnonzero(is_line & ~np.append(False, is_line[:-1]))
-    count = np.flatnonzero(is_line & ~np.append(is_line[1:], False)) + 1 - first
-    first, count = first[count >= _FEWEST], count[count >= _FEWEST]
+    first, last = runs(is_line)
+    is_long = is_line[first] & (last + 1 - first >= _FEWEST)
+    first, last = first[is_long], last[is_long]
     # A line that leads to a closed curve, and one that leads away from it, are none of it.
     start, end = path.start[moves[first]], path.end[moves]
-    last = first + count - 1
     leads_to = (np.abs(start - end[last]) > ROUNDING) & (
         np.minimum(np.abs(end[first] - end[last]), np.abs(end[first] - end[last - 1])) <= ROUNDING
     )
@@ -122,17 +121,17 @@ def _of_word(
 ) -> Correction | None:
     """The correction of the word of an axis whose number is nearly a value, best one of the others of the curve."""
     word = int(axis.word[0])
-    written = WORD.fullmatch("".join(trace.run.written(word).split())) if word >= 0 else None
-    slips = [slip for slip in slips_of(written[2]) if abs(float(slip.text) - value) <= tolerance] if written else []
-    if slips and written is not None:
+    address, written = parts_of(trace.run.written(word)) if word >= 0 else ("", "")
+    slips = [slip for slip in slips_of(written) if abs(float(slip.text) - value) <= tolerance]
+    if slips:
 
         def unlikely(slip: Slip) -> tuple[bool, bool, float]:
             number = float(slip.text)
             is_other = bool(np.nanmin(np.abs(others - abs(number))) <= ROUNDING)
-            return len(slip.text) > len(written[2]) + 1, not is_other, abs(number - value)
+            return len(slip.text) > len(written) + 1, not is_other, abs(number - value)
 
         slip = min(slips, key=unlikely)
-        text, why, remedy = written[1] + slip.text, slip.kind, f"with {written[1]}{slip.text}"
+        text, why, remedy = address + slip.text, slip.kind, f"with {address}{slip.text}"
     else:
         if word >= 0 and np.abs(neighbors - axis.value[0]).min() > ROUNDING:
             return None

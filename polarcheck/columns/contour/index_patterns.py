@@ -9,7 +9,7 @@ import numpy as np
 
 from polarcheck.columns.contour.correction import Correction
 from polarcheck.columns.trace import Trace
-from polarcheck.columns.words.slips import WORD, Slip, plain_number, slip_of
+from polarcheck.columns.words.slips import Slip, parts_of, plain_number, slip_of
 from polarcheck.foundation.arrays import Floats, Rows
 from polarcheck.geometry.tolerances import ROUNDING
 
@@ -110,23 +110,23 @@ def _is_stated(trace: Trace, count: int) -> bool:
 def _of_angle(trace: Trace, words: Rows, number: int, shift: float) -> Iterator[Correction]:
     """The correction of one of these words, if it is a slip of the pen, or all the others show what it is."""
     word, count = int(words[number]), len(words)
-    written = WORD.fullmatch("".join(trace.run.written(word).split()))
+    address, written = parts_of(trace.run.written(word))
     is_stated = _is_stated(trace, count)
-    if written is None or not (is_stated or count >= _SHOW):
+    if not written or not (is_stated or count >= _SHOW):
         return
-    angle = float(written[2])
+    angle = float(written)
     for turn in (0.0, _TURN, -_TURN):
         needed = angle + shift + turn
         if abs(needed) <= ROUNDING:  # no slip that leaves a number makes it 0
             slip = slip_of("0.", angle, _SAME_ANGLE)
             slip = None if slip is None else slip._replace(text="0.")
         else:
-            slip = slip_of(written[2], needed, _SAME_ANGLE)
+            slip = slip_of(written, needed, _SAME_ANGLE)
         if slip is not None:
             break
     else:
         if count < _SHOW + (not is_stated):
             return
         slip = Slip(plain_number(float(np.mod(angle + shift, _TURN))), "another angle is meant", False)
-    text, becomes = written[1] + slip.text, f"the {count} sections would divide the turn evenly"
+    text, becomes = address + slip.text, f"the {count} sections would divide the turn evenly"
     yield Correction(int(trace.run.row[word]), word, text, slip.kind, f"with {text}", becomes, "angles")

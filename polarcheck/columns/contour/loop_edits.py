@@ -10,7 +10,7 @@ import numpy as np
 
 from polarcheck.columns.contour.written_loop import AxisWords, WrittenLoop
 from polarcheck.columns.trace import Trace
-from polarcheck.columns.words.slips import WORD, Slip, plain_number, slips_of
+from polarcheck.columns.words.slips import Slip, parts_of, plain_number, slips_of
 from polarcheck.foundation.arrays import Floats, Mask, Points, Rows
 from polarcheck.geometry.regularity.coincidences import Outlines
 
@@ -70,6 +70,11 @@ class Edit(NamedTuple):
         return self.cost < _ELSEWHERE
 
 
+def order_edit(corner: int, cost: float) -> Edit:
+    """The edit that exchanges a block with the one behind it."""
+    return Edit("order", corner, (), "", "it stands before the block that should be before it", cost)
+
+
 def edits_of(trace: Trace, loop: WrittenLoop) -> Iterator[Edit]:
     """All edits of a path, the likelier first where they say the same."""
     for axis in range(2):
@@ -88,7 +93,9 @@ def _of_axis(trace: Trace, loop: WrittenLoop, number: int) -> Iterator[Edit]:
     for corner, word in enumerate(axis.word.tolist()):
         if word < 0:
             if is_open and corner and other.is_step[corner] and other.word[corner] >= 0:
-                is_letter = _parts(trace, int(other.word[corner]))[0].strip("=") == other.step_address.strip("=")
+                is_letter = parts_of(trace.run.written(int(other.word[corner])))[0].strip(
+                    "="
+                ) == other.step_address.strip("=")
                 value = _rounded(gap / float(axis.scale[corner]), axis, other)
                 text = f"{axis.step_address if is_letter else axis.address}{plain_number(value)}"
                 yield Edit("missing", corner, (), text, "a word is missing", _OF_BLOCK, number, value)
@@ -97,7 +104,7 @@ def _of_axis(trace: Trace, loop: WrittenLoop, number: int) -> Iterator[Edit]:
                 text = f"{axis.address}{plain_number(value)}"
                 yield Edit("missing", corner, (), text, "a word is missing", _OF_BLOCK, number, value)
             continue
-        address, written = _parts(trace, word)
+        address, written = parts_of(trace.run.written(word))
         if not address or np.isnan(axis.value[corner]):  # an edit has given the word to the other axis
             continue
         others = () if axis.is_step[corner] else (0.0, *sizes)
@@ -116,7 +123,7 @@ def _of_axis(trace: Trace, loop: WrittenLoop, number: int) -> Iterator[Edit]:
             letter = other.step_address if address.strip("=") == axis.step_address.strip("=") else other.address
             text = letter + "=" * address.endswith("=") + written
             yield Edit("letter", corner, (word,), text, "it has the letter of the other axis", 0.0, number)
-        elif not number and (parts := _parts(trace, int(other.word[corner])))[0]:
+        elif not number and (parts := parts_of(trace.run.written(int(other.word[corner]))))[0]:
             words = word, int(other.word[corner])
             text = f"{address}{parts[1]} {parts[0]}{written}"
             why = f"the numbers of {address.strip('=')} and {parts[0].strip('=')} are exchanged"
@@ -157,7 +164,7 @@ def _of_arcs(trace: Trace, loop: WrittenLoop, address: str) -> Iterator[Edit]:
     longest = _LARGEST_ARC * np.abs(ends - ends[0]).max() / loop.axes[1].scale
     for block, word in enumerate(words.tolist()):
         had = float(trace.run.words.value[word]) if word >= 0 else 0.0
-        letters, written = _parts(trace, word) if word >= 0 else ("", "")
+        letters, written = parts_of(trace.run.written(word)) if word >= 0 else ("", "")
         if letters and had:
             for slip, cost in _numbers(written, had, (0.0, *_sizes(values)), tuple(values.tolist())):
                 value = float(slip.text)
@@ -182,19 +189,13 @@ def _of_blocks(loop: WrittenLoop) -> Iterator[Edit]:
         if all(_is_same(axis, corner) for axis in loop.axes):
             yield Edit("twice", corner, (), "", "it stands there twice", _OF_BLOCK)
         if corner < count:
-            yield Edit("order", corner, (), "", "it stands before the block that should be before it", _OF_BLOCK)
+            yield order_edit(corner, _OF_BLOCK)
 
 
 def _is_same(axis: AxisWords, corner: int) -> bool:
     """A block has the word of an axis that the block before it has."""
     both = slice(corner - 1, corner + 1)
     return bool(np.isnan(axis.value[both]).all() or (axis.value[corner - 1] == axis.value[corner]))
-
-
-def _parts(trace: Trace, word: int) -> tuple[str, str]:
-    """The address and the number of a word as they are written; empty where it is no plain number."""
-    match = WORD.fullmatch("".join(trace.run.written(word).split()))
-    return (match[1], match[2]) if match is not None else ("", "")
 
 
 def _sizes(values: Floats) -> tuple[float, ...]:

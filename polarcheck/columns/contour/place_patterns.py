@@ -10,7 +10,7 @@ from polarcheck.columns.contour.correction import Correction
 from polarcheck.columns.contour.written_loop import axis_words
 from polarcheck.columns.trace import Trace
 from polarcheck.columns.words.last_digit import half_of_last_digit, same_place
-from polarcheck.columns.words.slips import WORD, plain_number, slip_of
+from polarcheck.columns.words.slips import parts_of, plain_number, slip_of
 from polarcheck.foundation.arrays import Points, Rows, different, first_in_run
 from polarcheck.foundation.states import Side
 from polarcheck.geometry.regularity.symmetric_corners import each_once, is_lonely, regular_polygons
@@ -73,13 +73,9 @@ def _correction(trace: Trace, above: int, row: int, place: complex, places: Poin
         text = f"{axis.address}{plain_number(round(needed, 3))}"
         return Correction(int(moves[-1]), -1, text, "a word is missing", f"with {text}", becomes, "pattern")
     at = int(written[-1])
-    word = WORD.fullmatch("".join(trace.run.written(int(axis.word[at])).split()))
-    slip = (
-        None
-        if word is None or axis.is_step[at]
-        else (slip_of(word[2], needed, ROUNDING) or slip_of(word[2], needed, tolerance / scale))
-    )
-    if word is None or slip is None or (len(places) == _FEWEST and not slip.plain):
+    address, number = parts_of(trace.run.written(int(axis.word[at])))
+    slip = slip_of(number, needed, ROUNDING) or slip_of(number, needed, tolerance / scale)
+    if axis.is_step[at] or slip is None or (len(places) == _FEWEST and not slip.plain):
         return None
-    text = word[1] + slip.text
+    text = address + slip.text
     return Correction(int(moves[at]), int(axis.word[at]), text, slip.kind, f"with {text}", becomes, "pattern")

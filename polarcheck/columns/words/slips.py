@@ -28,6 +28,12 @@ class Slip(NamedTuple):
     is_common: bool = True
 
 
+def parts_of(word: str) -> tuple[str, str]:
+    """The address and the number of a word as it is written; both empty where it is no plain number."""
+    match = WORD.fullmatch("".join(word.split()))
+    return (match[1], match[2]) if match is not None else ("", "")
+
+
 def slip_of(written: str, meant: float, tolerance: float) -> Slip | None:
     """The slip that makes what is written of a number near the one that is meant; None where none does."""
     best: tuple[float, Slip] | None = None

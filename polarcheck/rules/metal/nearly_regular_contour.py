@@ -33,8 +33,8 @@ def nearly_regular_contour(regularity: Regularity) -> Hits:
     and the part is scrap. Shapes with fewer than five corners are not looked at, nor is a side that lies elsewhere on
     purpose, since no slip of the pen explains where it lies. The same is looked at where a tool goes down without
     compensation at four places or more: all but one of them are those of a regular polygon round the center of C; and
-    where sections that cut the same stand at angles of C that divide the turn evenly but for one. A curve of twelve
-    short lines or more has a point that is off it, where the curve is smooth without a slip of the pen in its words.
+    where sections that cut the same stand at angles of C that divide the turn evenly but for one. In a curve of twelve
+    short lines or more a point is off it where the curve is smooth with one word of the point written otherwise.
 
     Source: the geometry of the contour alone.
 
