@@ -769,3 +769,31 @@ def test_a_pass_at_an_unknown_depth_may_be_the_deepest(control: str, deeper: str
     (shape, *_) = made_by(tables_of(text, control, CUTTER))
     assert (shape.z, "to Z not known" in shape.text) == (None, True)
     assert in_one_line(tables_of(text, control, CUTTER)) == "hexagon, 36.000 across flats, to Z not known"
+
+
+#: Programs whose sections name the virtual axis otherwise than the machine writes it, by what a G12.1 has beside it.
+CITIZEN = (
+    "O1/G21 G98 G40/T0101/G97 S3000 M13/G28 H0/G0 X60. Z-2. C0/G12.1 D1/G1 X28. F1000./Z4. F200./G42 X18. C0 F150./"
+    "C10.392/X0 C20.785/X-18. C10.392/C-10.392/X0 C-20.785/X18. C-10.392/C0/G40 X28./Z-2. F1000./G13.1/M5/M30"
+)
+_SECTION = CITIZEN[CITIZEN.index("/G12.1") : CITIZEN.index("/M5")]
+
+
+@looped(
+    ("control", "text"),
+    [
+        ("citizen", CITIZEN),
+        ("citizen", CITIZEN.replace("C", "Y").replace("Y0/G12.1 D1", "C0/G12.1 D0")),
+        ("citizen", CITIZEN.replace("/M5", f"/G0 X60. Z-2. C0{_SECTION.replace('C', 'Y').replace('D1', 'D0')}/M5")),
+        *((control, text) for control, text in PROGRAMS.items()),
+    ],
+)
+def test_what_a_rewriter_writes_is_to_a_check_what_it_was(control: str, text: str, tmp_path: Path) -> None:
+    old = text.replace("/", "\n") + "\n"
+    (file,) = written(tmp_path, old)
+    new = run("compensate", "--center", "--machine", control, "--no-config", "--tool", CUTTER, file).stdout
+    assert new
+    for of_text in (old, new):
+        report = report_of(of_text, control, CUTTER)
+        assert (report.verdict, report.findings) == ("pass", [])
+    assert compared(tmp_path, control, old, new).exit_code == 0

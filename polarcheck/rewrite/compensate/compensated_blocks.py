@@ -80,6 +80,7 @@ class _Writer:
         trace, first, last = self.trace, group[0], group[-1]
         units = int(trace.lengths.units[first])
         pen = self.pens.setdefault(units, pen_at(trace, first, self.style))
+        pen.virtual = trace.axes.virtual_axis_of(first)
         start = next((stroke.piece.start for row in group for stroke in strokes[row]), complex(trace.path.start[first]))
         motion = self._motion_before(first)
         point, z = start + complex(trace.path.center_shift[first]), float(trace.path.z_before[first])

@@ -141,7 +141,7 @@ def read_back_on_part(
     finer: ascending tolerances that are tried first [mm]: the deviation is measured up to the first one that the paths
     keep.
     keeps_sections: the sections are divided into other moves alone: F outside of them, their depths, values of F and
-    the state at their beginning are compared.
+    the state at their beginning are compared, and warnings of a check count as its errors do.
 
     Raises RefusedError where a position of the original is not known, or the new program cannot be run once.
     """
@@ -169,7 +169,8 @@ def read_back_on_part(
         differences.append(Refusal(line, f"{text} (line {new_line} of the result)"))
     differences += changed_orders(original.trace, new.trace, old_path, new_path, tolerance)
     notes: dict[str, str] = {}
-    for rule, _, refusal in _added_findings(original, new, origin, Severity.ERROR):
+    lowest = Severity.WARNING if keeps_sections else Severity.ERROR
+    for rule, _, refusal in _added_findings(original, new, origin, lowest):
         if rule.group in noted:
             notes.setdefault(rule.name, f"line {refusal.line}: {refusal.text}")
         else:
