@@ -797,3 +797,22 @@ def test_what_a_rewriter_writes_is_to_a_check_what_it_was(control: str, text: st
         report = report_of(of_text, control, CUTTER)
         assert (report.verdict, report.findings) == ("pass", [])
     assert compared(tmp_path, control, old, new).exit_code == 0
+
+
+@looped("control", ["fanuc-30i", "siemens-transmit", "okuma-osp"])
+def test_a_straight_move_outside_of_sections_may_be_divided(control: str, tmp_path: Path) -> None:
+    dot = "." if control in ("fanuc-30i", "haas-lathe") else ""
+    place = "/G0 X300 Z100/M12" if control == "okuma-osp" else f"/G0 X100{dot} Z50{dot}"
+    approach = f"/G0 X80{dot}/Z60{dot}"
+    whole = f"{approach}/G1 X90{dot} F100{dot}/X120{dot}/G0 Z100{dot}{place}"
+    sound = program(control, (place, whole))
+    for old, new, code in (
+        (f"/X120{dot}", f"/X100{dot}/X110{dot}/X120{dot}", 0),
+        (approach, f"/G0 X80{dot}/Z50{dot}/Z60{dot}", 0),
+        (f"/X120{dot}", f"/X100{dot}/M9/X120{dot}", 1),
+        (f"/X120{dot}", f"/X100{dot} F200{dot}/X120{dot}", 1),
+        (f"/X120{dot}", f"/X130{dot}/X120{dot}", 1),
+    ):
+        text = program(control, (place, whole.replace(old, new)))
+        assert compared(tmp_path, control, sound, text).exit_code == code
+        assert certified(tmp_path, control, sound, text).exit_code == code

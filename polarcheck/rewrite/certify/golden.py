@@ -15,6 +15,7 @@ from msgspec import UNSET, UnsetType
 from polarcheck.columns.filling import before
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation import bounded
+from polarcheck.foundation.arrays import Floats
 from polarcheck.foundation.decoding import json_decoder
 from polarcheck.foundation.errors import CertificateError
 from polarcheck.foundation.states import Motion
@@ -41,6 +42,8 @@ _ORDER = b'{"order":'
 #: those of Z alone.
 _HEAD = '{"golden":2}\n'
 _MOTIONS = {Motion.NONE: "move", Motion.RAPID: "rapid", Motion.LINE: "line", Motion.CW: "cw", Motion.CCW: "ccw"}
+#: Motions whose points between show in no path.
+_STRAIGHT = (_MOTIONS[Motion.RAPID], _MOTIONS[Motion.LINE])
 _Pair = tuple[float | None, float | None]
 
 
@@ -185,10 +188,32 @@ def changed_orders(ours: GoldenTrace, golden: GoldenTrace, tolerance: float, tit
             return None
         return Difference("place", f"{step.text} stands elsewhere on the path", new_line=step.line)
 
-    before, after = ([order.step(number) for number, order in enumerate(trace.orders)] for trace in (golden, ours))
+    before, after = (_undivided(trace.orders) for trace in (golden, ours))
     for difference in listed(order_differences(before, after, tolerance, moved)):
         where = f"line {difference.new_line}: " if difference.new_line else ""
         yield f"{where}{difference.text} against {title}"
+
+
+def _undivided(orders: Sequence[GoldenOrder]) -> list[Step]:
+    """Return the orders as steps; moves outside of sections without the points that divide one straight move."""
+    kept: list[Step] = []
+    for number, order in enumerate(orders):
+        step = order.step(number)
+        if len(kept) > 1 and kept[-1].tokens == step.tokens and step.tokens[1] in _STRAIGHT:
+            (start, middle), end = (np.array(before.values[:3]) for before in kept[-2:]), np.array(step.values[:3])
+            is_move = kept[-2].tokens[:1] == step.tokens[:1] and kept[-2].tokens[2:5] == step.tokens[2:5]
+            if is_move and kept[-1].values[3:] == step.values[3:] and _is_between(start, middle, end):
+                kept.pop()
+        kept.append(step)
+    return kept
+
+
+def _is_between(start: Floats, middle: Floats, end: Floats) -> bool:
+    """Return True if a point lies on the way from one to another, of X, Z [mm] and C [deg]; False if one is unknown."""
+    whole, piece = end - start, middle - start
+    length = float(np.abs(whole).max())
+    share = float(piece @ whole) / float(whole @ whole) if length > ZERO else np.nan
+    return 0 <= share <= 1 and bool((np.abs(piece - share * whole) <= ZERO).all())
 
 
 def _distance(order: GoldenOrder, other: GoldenOrder) -> float:
