@@ -65,6 +65,11 @@ def test_the_sound_contour_has_no_finding(contour: list[str]) -> None:
     assert said(report_of(program(contour), "fanuc-30i", "1:radius=2")) == []
 
 
+def test_a_lens_about_the_center_is_sound() -> None:
+    contour = ["G42 X24. C0 F200", "G3 X0 C18.33 R20.", "G3 C-18.33 R20.", "G3 X24. C0 R20.", "G1 G40 X50."]
+    assert said(report_of(program(contour), "fanuc-30i", "1:radius=2")) == []
+
+
 def as_it_is(lines: list[str]) -> list[str]:
     return lines
 

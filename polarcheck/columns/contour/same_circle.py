@@ -105,6 +105,8 @@ class SameCircle(Columns, frozen=True):
             fits = valid & (np.abs(np.abs(far - about) - size) <= _SAME) & (np.abs(about - passes.center[move]) > _SAME)
             # In a circle of two halves each of them lies on the circle of the other one.
             fits &= passes.beside[0][move] != passes.beside[1][move]
+            # A lens about the center of C: two equal circles at either side of it.
+            fits &= np.abs(about + passes.center[move]) > _SAME
             center[fits], radius[fits], adjacent[fits] = about[fits], size[fits], True
         chosen = near | adjacent
         intended = self._intended(move[chosen], center[chosen], radius[chosen])

@@ -111,6 +111,8 @@ class Tangency(Columns, frozen=True):
         candidate = ~np.isnan(candidates.radius) & (corner > np.maximum(_CORNER, _CLEARLY * candidates.tolerance))
         # Arcs about the center of C are what is left of the bar.
         candidate &= np.abs(passes.center[candidates.move]) > _SAME
+        # Two equal circles at either side of it are a lens.
+        candidate &= np.abs(passes.center[candidates.move] + candidates.center) > _SAME
         number = passes.number[candidates.move]
         chosen = [self._misfits_of(which, candidate) for which in different(number[candidate])[:_MOST].tolist()]
         return np.concatenate([np.zeros(0, np.int64), *chosen])
