@@ -87,12 +87,15 @@ class PlanePath(Table, frozen=True):
         start, end = self.start[move], self.end[move]
         point = start + (end - start) * share
         arcs = np.flatnonzero(self.is_arc[move])
-        of, of_arc = move[arcs], share[arcs]
-        center = self.center[of]
-        spoke = start[arcs] - center
-        growth = np.where(spoke == 0, 0, np.abs(end[arcs] - center) / np.maximum(np.abs(spoke), ZERO) - 1)
-        point[arcs] = center + spoke * (1 + growth * of_arc) * np.exp(1j * self.sweep[of] * of_arc)
-        return np.where(share == 0, start, np.where(share == 1, end, point))
+        if len(arcs):
+            spoke = self.start - self.center
+            growth = np.where(spoke == 0, 0, np.abs(self.end - self.center) / np.maximum(np.abs(spoke), ZERO) - 1)
+            of, of_arc = move[arcs], share[arcs]
+            angle, turn = self.sweep[of] * of_arc, np.empty(len(arcs), np.complex128)
+            turn.real, turn.imag = np.cos(angle), np.sin(angle)
+            point[arcs] = self.center[of] + spoke[of] * (1 + growth[of] * of_arc) * turn
+        point[share == 0], point[share == 1] = start[share == 0], end[share == 1]
+        return point
 
     def turned_by(self, turn: complex | Points) -> Self:
         """Return the moves turned about the center of C by the angle of a number of length 1, or of one per move."""

@@ -69,13 +69,10 @@ def segments(moves: Curves, tolerance: float) -> Segments:
 
     move = np.repeat(np.arange(len(moves)), count)
     begin, until, loop = moves.start[move], moves.end[move], moves.loop[move].astype(np.int64, copy=False)
-    on_arc = np.flatnonzero(moves.is_arc[move])
-    which, index = ranges(count[round_])
-    turned = (first[which] + index - 1) * unit[which] - angle[which]
-    share = np.divide(turned, sweep[which], out=np.zeros(len(which)), where=index > 0)
-    begin[on_arc] = arcs.points(which, share)
-    inner = on_arc[1:][which[1:] == which[:-1]]
-    until[inner - 1] = begin[inner]
+    which, index = ranges(count[round_] - 1)
+    share = ((first[which] + index) * unit[which] - angle[which]) / sweep[which]
+    inner = (np.cumsum(count) - count)[round_][which] + index + 1
+    begin[inner] = until[inner - 1] = arcs.points(which, share)
     result = Segments(begin, until, move, loop)
     has_length = np.abs(until - begin) > ZERO
     result = result if has_length.all() else result[has_length]
