@@ -61,8 +61,11 @@ def noded(start: Points, end: Points, group: Rows) -> Edges:
 
 def _walls(start: Points, end: Points, group: Rows) -> tuple[Rows, _Walls, Mask]:
     """The walls that have a length, which of all walls they are, and a mask of groups, none of them tangled yet."""
-    nodes, ends = _vertices(np.concatenate([start, end]))
-    a, b = ends[: len(start)], ends[len(start) :]
+    goes_on = np.append(end[:-1] == start[1:], False)[: len(end)]
+    nodes, number = _vertices(np.concatenate([start, end[~goes_on]]))
+    a = number[: len(start)]
+    b = np.append(a[1:], -1)[: len(a)]
+    b[~goes_on] = number[len(start) :]
     long = np.flatnonzero(a != b)
     tangled = np.zeros(int(group[-1]) + 1 if len(group) else 0, bool)
     return long, _Walls(nodes, a[long], b[long], group[long]), tangled
@@ -161,8 +164,9 @@ def _pairs(walls: _Walls, tangled: Mask) -> Iterator[tuple[Rows, Rows]]:
         return
     runs = _runs(walls)
     group, size = walls.group[runs.first], runs.size
-    boxes = box, _ = _boxes(walls, runs.first), _boxes(walls, np.arange(len(walls.a)))
-    tree = shapely.STRtree(shapely.box(*box))
+    boxes = _boxes(walls, runs.first)
+    rectangles = shapely.box(*boxes[0])
+    tree = shapely.STRtree(rectangles)
     remaining = _PAIRS * np.bincount(walls.group, minlength=len(tangled)) + _FREE_PAIRS
     begin, step = 0, _LEAST_AT_A_TIME
     batches, count = [], 0
@@ -170,17 +174,19 @@ def _pairs(walls: _Walls, tangled: Mask) -> Iterator[tuple[Rows, Rows]]:
         keep_time()
         queried = np.arange(begin, min(begin + step, len(group)))
         queried = queried[~tangled[group[queried]]]
-        which, second = tree.query(shapely.box(*(side[queried] for side in box)))
+        which, second = tree.query(rectangles[queried])
         begin += step
         step = int(np.clip(step * _PAIRS_AT_A_TIME // (len(which) + 1), _LEAST_AT_A_TIME, 2 * step))
         run = queried[which]
-        bent = runs.bend[run] + runs.bend[second] - runs.joint[run]
-        follows = (second == run + 1) & runs.joined[second] & (bent < _HALF_TURN)
-        kept = (run < second) & (group[run] == group[second]) & ~follows
+        kept = run < second
         run, second = run[kept], second[kept]
         kept = ~_apart(runs, run, second)
         run, second = run[kept], second[kept]
         kept = ~_apart(runs, second, run)
+        run, second = run[kept], second[kept]
+        bent = runs.bend[run] + runs.bend[second] - runs.joint[run]
+        follows = (second == run + 1) & runs.joined[second] & (bent < _HALF_TURN)
+        kept = (group[run] == group[second]) & ~follows
         run, second = run[kept], second[kept]
         remaining -= np.bincount(group[run], size[run] * size[second], len(tangled)).astype(np.int64)
         tangled |= remaining < 0
@@ -198,18 +204,16 @@ def _pairs(walls: _Walls, tangled: Mask) -> Iterator[tuple[Rows, Rows]]:
 
 
 #: Least x and c, greatest x and c [mm].
-_Boxes = tuple[Floats, Floats, Floats, Floats]
+_Boxes = list[Floats]
 
 
-def _boxes(walls: _Walls, first: Rows) -> _Boxes:
-    """Boxes of runs of walls, widened by TOUCH: least x and c, greatest x and c [mm]."""
+def _boxes(walls: _Walls, first: Rows) -> tuple[_Boxes, _Boxes]:
+    """Boxes of runs of walls and of the walls, widened by TOUCH."""
     a, b = walls.nodes[walls.a], walls.nodes[walls.b]
-    return (
-        np.minimum.reduceat(np.minimum(a.real, b.real), first) - TOUCH,
-        np.minimum.reduceat(np.minimum(a.imag, b.imag), first) - TOUCH,
-        np.maximum.reduceat(np.maximum(a.real, b.real), first) + TOUCH,
-        np.maximum.reduceat(np.maximum(a.imag, b.imag), first) + TOUCH,
-    )
+    low = [np.minimum(part(a), part(b)) - TOUCH for part in (np.real, np.imag)]
+    high = [np.maximum(part(a), part(b)) + TOUCH for part in (np.real, np.imag)]
+    of_runs = [np.minimum.reduceat(side, first) for side in low] + [np.maximum.reduceat(side, first) for side in high]
+    return of_runs, [*low, *high]
 
 
 def _shares(count: Rows) -> list[Rows]:
