@@ -9,7 +9,7 @@ import numpy as np
 
 from polarcheck.columns.trace import Trace
 from polarcheck.columns.words.last_digit import half_of_last_digit, same_place
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, stretch
 from polarcheck.foundation.states import STATES, Motion
 from polarcheck.program.machines.axis_table import INCREMENTS
 
@@ -138,6 +138,7 @@ def _words(trace: Trace, row: Rows, address: str) -> Rows:
 
 def _last(trace: Trace, row: Rows, words: Rows) -> Rows:
     """The last of these executed words in each row, -1 for none."""
+    words = words[slice(*stretch(words, *stretch(trace.run.row, int(row.min()), int(row.max()) + 1)))]
     last = np.searchsorted(trace.run.row[words], row, "right") - 1
     found = words[np.maximum(last, 0)] if len(words) else np.full(len(row), -1)
     return np.where((last >= 0) & (trace.run.row[found] == row), found, -1)
