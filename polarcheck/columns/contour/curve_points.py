@@ -9,7 +9,6 @@ import numpy as np
 from polarcheck.columns.contour.correction import Correction
 from polarcheck.columns.contour.written_loop import AxisWords, axis_words
 from polarcheck.columns.trace import Trace
-from polarcheck.columns.words.last_digit import half_of_last_digit
 from polarcheck.columns.words.slips import Slip, parts_of, plain_number, slips_of
 from polarcheck.foundation.arrays import Floats, Points, Rows, runs
 from polarcheck.foundation.states import Motion
@@ -43,7 +42,7 @@ def off_the_curve(trace: Trace) -> list[Correction]:
     curves = _curves(trace)
     if not len(curves.row):
         return []
-    half = np.abs(half_of_last_digit(trace))
+    half = np.abs(trace.lengths.half_of_last_digit)
     is_own = curves.row >= 0
     digit = _DIGITS * np.where(is_own, half[curves.row], 0.0)
     rough = np.zeros(len(curves.point), np.complex128)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from polarcheck.columns.trace import Trace
-from polarcheck.columns.words.last_digit import half_of_last_digit
 from polarcheck.foundation.arrays import Columns, Floats, Mask, Points, Rows, States, cached_property, is_among
 from polarcheck.foundation.states import Motion, Side
 from polarcheck.geometry.plane import angle_between
@@ -89,7 +88,7 @@ class Passes(Columns, frozen=True):
     @cached_property
     def half_of_last_digit(self) -> Floats:
         """How far the rounding of its words may shift the points of each move [mm]."""
-        return np.asarray(np.abs(half_of_last_digit(self.trace))[self.row])
+        return np.asarray(np.abs(self.trace.lengths.half_of_last_digit)[self.row])
 
     @cached_property
     def compensated(self) -> Mask:

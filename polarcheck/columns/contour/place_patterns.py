@@ -8,8 +8,8 @@ import numpy as np
 
 from polarcheck.columns.contour.correction import Correction
 from polarcheck.columns.contour.written_loop import axis_words
+from polarcheck.columns.path.lengths import same_place
 from polarcheck.columns.trace import Trace
-from polarcheck.columns.words.last_digit import half_of_last_digit, same_place
 from polarcheck.columns.words.slips import parts_of, plain_number, slip_of
 from polarcheck.foundation.arrays import Points, Rows, different, first_in_run
 from polarcheck.foundation.states import Side
@@ -31,7 +31,7 @@ def _of_section(trace: Trace, rows: Rows) -> Iterator[Correction]:
     written = different(place)
     if not _FEWEST <= len(written) <= _MOST:
         return
-    tolerance = same_place(complex(half_of_last_digit(trace)[rows[0]]))
+    tolerance = same_place(complex(trace.lengths.half_of_last_digit[rows[0]]))
     places = each_once(written, tolerance)
     visits = np.count_nonzero(np.abs(place[:, None] - places) <= tolerance, axis=0)
     if len(places) < _FEWEST or visits.min() != visits.max():
@@ -54,7 +54,7 @@ def _correction(trace: Trace, above: int, row: int, place: complex, places: Poin
     if not len(moves):
         return None
     axes = axis_words(trace, moves)
-    tolerance = same_place(complex(half_of_last_digit(trace)[row]))
+    tolerance = same_place(complex(trace.lengths.half_of_last_digit[row]))
     away = [complex((place - trace.path.end[row]) / axis.direction).real for axis in axes]
     odd = [axis for axis, shift in zip(axes, away, strict=True) if abs(shift) > tolerance]
     if len(odd) != 1:

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 import msgspec
 import numpy as np
 
+from polarcheck.columns.path.lengths import same_place
 from polarcheck.columns.trace import Trace
-from polarcheck.columns.words.last_digit import half_of_last_digit, same_place
 from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, column_at
 from polarcheck.foundation.states import Motion
 from polarcheck.geometry.plane import angle_between, arc_sweep
@@ -162,7 +162,7 @@ def _different(trace: Trace, rows: Rows, first: Rows, count: Rows) -> Iterator[P
     """A loop for each of these stretches of the rows, but for those that repeat an earlier one."""
     if not len(first):
         return
-    half = half_of_last_digit(trace)
+    half = trace.lengths.half_of_last_digit
     travels = np.flatnonzero(trace.path.travels)
     by_radius = trace.lengths.length_of(trace.machine.arcs.radius_word)
     to_center = np.nan_to_num(trace.path.center - trace.path.start)

@@ -6,7 +6,6 @@ import numpy as np
 
 from polarcheck.columns.path.arcs import Arcs
 from polarcheck.columns.trace import Trace
-from polarcheck.columns.words.last_digit import half_of_last_digit
 from polarcheck.foundation.arrays import (
     Columns,
     Floats,
@@ -95,7 +94,7 @@ class Senses(Columns, frozen=True):
         if not len(arc):
             return np.zeros(0)
         row = self._moving[arc]
-        digit = 2 * np.abs(half_of_last_digit(trace)[row])
+        digit = 2 * np.abs(trace.lengths.half_of_last_digit[row])
         shortest = np.minimum(trace.path.length[self._moving[arc - 1]], trace.path.length[self._moving[arc + 1]])
         radius = np.abs(trace.path.start[row] - trace.path.center[row])
         half_chord = np.abs(trace.path.end[row] - trace.path.start[row]) / 2

@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from polarcheck.columns.path.lengths import same_place
 from polarcheck.columns.trace import Trace
-from polarcheck.columns.words.last_digit import half_of_last_digit, same_place
 from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, stretch
 from polarcheck.foundation.states import STATES, Motion
 from polarcheck.program.machines.axis_table import INCREMENTS
@@ -114,7 +114,7 @@ def written_loop(trace: Trace, row: Rows) -> WrittenLoop:
         np.nan_to_num(trace.path.center - trace.path.start)[own],
         _last(trace, own, trace.blocks.code_indices(*codes)),
         {address: np.where(turns != 0, words, -1) for address, words in of_arcs.items()},
-        same_place(complex(half_of_last_digit(trace)[last])),
+        same_place(complex(trace.lengths.half_of_last_digit[last])),
     )
 
 

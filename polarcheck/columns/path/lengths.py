@@ -11,7 +11,7 @@ from polarcheck.columns.modes.modal import ModalStates
 from polarcheck.columns.modes.mode import PolarMode
 from polarcheck.columns.path.axes import PlaneAxes
 from polarcheck.columns.path.coordinates import Coordinates
-from polarcheck.foundation.arrays import Floats, States, cached_property, computed, is_repeated
+from polarcheck.foundation.arrays import Floats, Points, Rows, States, cached_property, computed, folded, is_repeated
 from polarcheck.foundation.states import MM_PER_INCH, Units
 from polarcheck.program.execution.run import Run
 from polarcheck.program.machines.code_lists import numbers
@@ -20,6 +20,15 @@ from polarcheck.program.machines.machine import Machine
 
 #: Radius per length along an axis.
 RADIUS_FACTOR = {"diameter": 0.5, "radius": 1.0}
+#: Nobody means a coarser digit than this many least increments: X20. is 20, and no number between 19.5 and 20.5.
+_COARSEST = 10
+#: Least and greatest distance that counts as the same place [mm], in halves of the last digit.
+_SAME, _SAME_AT_MOST, _DIGITS = 0.005, 0.03, 5
+
+
+def same_place(half_of_digit: complex) -> float:
+    """How far two points may be apart that are the same place [mm]. half_of_digit: of X and the virtual axis [mm]."""
+    return float(np.clip(_DIGITS * abs(half_of_digit), _SAME, _SAME_AT_MOST))
 
 
 def _scale(units: States) -> Floats:
@@ -146,3 +155,24 @@ class Lengths(Lookups, frozen=True):
             return None
         lasting = self.blocks.codes(*control.x_radius_words, *control.x_diameter_words)
         return np.where(happened(both, lasting | self.blocks.starts), 1.0, self.x_factor)
+
+    @cached_property
+    def half_of_last_digit(self) -> Points:
+        """
+        Half of the last digit in X, as a radius, and in the virtual axis [mm]; NaN outside of sections.
+
+        It is that of the number with the most decimals in the section, since posts leave out zeros at the end. Numbers
+        without any are taken as exact to the least increment.
+        """
+        x = self._last_digit(self.blocks.word_indices("X", "U")) * self.x_factor
+        virtual = self._last_digit(self.axes.virtual_words)
+        return np.where(self.mode.section >= 0, (x + 1j * virtual) * self.scale / 2, complex("nan+nanj"))
+
+    def _last_digit(self, words: Rows) -> Floats:
+        """The finest digit of these words in the section of each row."""
+        section = self.mode.section[self.run.row[words]]
+        own = self.run.words.decimals[words]
+        decimals = folded(np.maximum, section, np.where(section >= 0, own, 0), len(self.mode.sections) + 1, 0)
+        least = self.least_increment
+        finest = np.minimum((10.0**-decimals)[self.mode.section], _COARSEST * least)
+        return np.where((decimals > 0)[self.mode.section], finest, least)

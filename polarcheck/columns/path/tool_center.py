@@ -11,7 +11,6 @@ import numpy as np
 from polarcheck.columns.path.infeed import Infeed
 from polarcheck.columns.path.moves import Moves, compensation_path, of_tool, per_row, tool_center_path
 from polarcheck.columns.trace import Trace
-from polarcheck.columns.words.last_digit import half_of_last_digit
 from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, cached_property
 from polarcheck.foundation.states import Motion, Side
 from polarcheck.geometry.cutter_compensation.offset_path import Path, ToolPath
@@ -103,7 +102,7 @@ class ToolCenter:
 
     @cached_property
     def _half_of_last_digit(self) -> Points:
-        return half_of_last_digit(self.trace)[self._rows]
+        return self.trace.lengths.half_of_last_digit[self._rows]
 
     @cached_property
     def stretch(self) -> Rows:
