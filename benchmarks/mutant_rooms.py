@@ -32,7 +32,7 @@ ROOMS = {
                 "tool_center",
             )
         ),
-        *(f"polarcheck/columns/*/{name}.py" for name in ("coverage", "senses", "trial", "uncompensated_cuts")),
+        *(f"polarcheck/columns/*/{name}.py" for name in ("coverage", "tangency", "trial", "uncompensated_cuts")),
     ),
     "metal": (
         *(f"polarcheck/geometry/polygons/{name}.py" for name in ("cleared", "finished_part", "standing_metal")),

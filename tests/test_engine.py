@@ -606,4 +606,4 @@ def test_rules_that_a_program_cannot_break_make_no_tables() -> None:
     assert not Engine(turning, {}, RULES.values()).findings()
     made = {name for name, _ in turning.computed()}
     assert made >= {"trace", "written", "procedure"}
-    assert not made & {"regularity", "coverage", "air_cuts", "slots", "part_comments", "tool_comments", "senses"}
+    assert not made & {"regularity", "coverage", "air_cuts", "slots", "part_comments", "tool_comments", "tangency"}

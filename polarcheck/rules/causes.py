@@ -31,7 +31,6 @@ SUBJECT_OF_TABLE: Final = {
     "tool_center": "compensation",
     "ramps": "compensation",
     "arcs": "arc",
-    "senses": "side",
     "tangency": "side",
 }
 #: The span in which each subject is judged (a wrong arc costs its own rate of C, but all of the contour), and what the

@@ -107,7 +107,6 @@ TABLES = {
     "pass_differences": Maker("polarcheck.columns.contour.pass_differences:PassDifferences", SECTION),
     "full_circles": Maker("polarcheck.columns.contour.full_circles:FullCircles", ARC),
     "same_circle": Maker("polarcheck.columns.contour.same_circle:SameCircle", ARC),
-    "senses": Maker("polarcheck.columns.contour.senses:Senses", ARC),
     "tangency": Maker("polarcheck.columns.contour.tangency:Tangency", ARC),
     "regularity": Maker("polarcheck.columns.contour.regularity:Regularity", SECTION),
     "misplaced_ramps": Maker("polarcheck.columns.contour.misplaced_ramps:MisplacedRamps", SECTION),

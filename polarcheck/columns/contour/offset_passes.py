@@ -59,10 +59,9 @@ def _odd_point(passes: Passes, model: int, number: int) -> OddPoint | None:
     moves = ring - passes.first[model] + passes.first[number]
     if (passes.motion[ring] != passes.motion[moves]).any() or _program(passes, ring[0]) != _program(passes, moves[0]):
         return None
-    tangents = [1j * tangent[ring] for tangent in passes.tangents]
-    if not all(tangent.all() for tangent in tangents):
+    begins, ends = (1j * tangent[ring] for tangent in passes.tangents)
+    if not (begins.all() and ends.all()):
         return None
-    begins, ends = (tangent / np.abs(tangent) for tangent in tangents)
     walls = np.append(ends[-1], ends), np.append(begins, begins[0])
     apart = np.append(passes.start[moves] - passes.start[ring], passes.end[moves[-1]] - passes.end[ring[-1]])
     for into, out in ((np.zeros(len(apart)),) * 2, tuple(np.round(np.abs(wall.real), 2) for wall in walls)):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Columns, Floats, Mask, Points, Rows, States, cached_property, is_among
+from polarcheck.foundation.arrays import Columns, Floats, Mask, Points, Rows, States, cached_property
 from polarcheck.foundation.states import Motion, Side
 from polarcheck.geometry.plane import angle_between
 from polarcheck.geometry.tolerances import ADJUSTMENT, ROUNDING
@@ -174,14 +174,9 @@ class Passes(Columns, frozen=True):
 
     @cached_property
     def tangents(self) -> tuple[Points, Points]:
-        """Directions in which each move begins and ends; not of length one."""
-        turning = np.where(self.motion == Motion.CCW, 1j, -1j)
-        is_arc = is_among(self.motion, (Motion.CW, Motion.CCW)) & ~np.isnan(self.center)
-        chord = self.end - self.start
-        return (
-            np.where(is_arc, turning * (self.start - self.center), chord),
-            np.where(is_arc, turning * (self.end - self.center), chord),
-        )
+        """Unit directions in which each move begins and ends; 0 for one of no length."""
+        path = self.trace.path.moves_of(self.row)
+        return path.leaving, path.arriving
 
     @cached_property
     def turns(self) -> tuple[Floats, Floats]:

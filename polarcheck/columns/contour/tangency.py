@@ -20,6 +20,8 @@ from polarcheck.geometry.plane import angle_between
 
 #: A turn that is meant as a corner [rad], and this many times what rounding turns a tangent by.
 _CORNER, _CLEARLY = np.radians(1.5), 4
+#: The same of an arc that may be meant the other way round.
+_CORNER_REVERSED = np.radians(10)
 #: A contour with a single arc: from this turn on a factor alone speaks for another R [rad].
 _SHARP = np.radians(5)
 #: Further slack for the direction of a tangent [rad], as from an I that is rounded to another digit.
@@ -99,6 +101,48 @@ class Tangency(Columns, frozen=True):
 
     def _column(self, moves: Rows) -> Mask:
         return self.trace.blocks.mask_of(self.passes.row[moves])
+
+    # ---- with the other sense ----
+
+    @cached_property
+    def _corners(self) -> Floats:
+        """Per judged arc the smaller of the turns at its ends [rad]."""
+        return np.asarray(np.min([np.abs(turn[self._candidates.move]) for turn in self.passes.turns], axis=0))
+
+    @cached_property
+    def _fits_reversed(self) -> Mask:
+        """Judged arcs in offset mode that turn a corner at either end, and are tangent on both sides if reversed."""
+        passes, (move, tolerance, *_) = self.passes, self._candidates
+        start, end, center = passes.start[move], passes.end[move], passes.center[move]
+        # By R it is the other circle through both ends, by I and J the same circle the other way round.
+        center = np.where(self.arcs.by_radius[passes.row[move]], start + end - center, center)
+        turning = np.where(passes.motion[move] == Motion.CCW, -1j, 1j)
+        previous, following = (neighbor[move] for neighbor in passes.beside)
+        into = angle_between(passes.tangents[1][previous], turning * (start - center))
+        out = angle_between(turning * (end - center), passes.tangents[0][following])
+        is_tangent = np.maximum(np.abs(into), np.abs(out)) <= tolerance
+        is_corner = self._corners > np.maximum(_CORNER_REVERSED, _CLEARLY * tolerance)
+        return np.asarray(is_tangent & is_corner & passes.compensated[passes.number[move]])
+
+    @cached_property
+    def fits_reversed(self) -> Mask:
+        """Arcs in offset mode that turn a corner at either end, where the other sense is tangent on both sides."""
+        return self._column(self._candidates.move[self._fits_reversed])
+
+    @cached_property
+    def is_reversed(self) -> Mask:
+        """
+        The only arcs of their pass that fit reversed, of which another arc is tangent; and those that go round the rest
+        of the circle, back along the blocks on both sides, which is never intended.
+        """
+        candidates, number = self._candidates, self.passes.number[self._candidates.move]
+        tangent, fitting = (
+            np.bincount(number[of_pass], minlength=len(self.passes.first))[number]
+            for of_pass in (self.is_tangent[self.passes.row[candidates.move]], self._fits_reversed)
+        )
+        back = self._corners >= np.pi - candidates.tolerance
+        back &= self.arcs.sweep[self.passes.row[candidates.move]] > 180
+        return self._column(candidates.move[self._fits_reversed & (back | ((tangent > 0) & (fitting == 1)))])
 
     # ---- as it would be ----
 

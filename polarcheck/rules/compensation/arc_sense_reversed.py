@@ -7,7 +7,7 @@ from polarcheck.rules.rule import WARNING, rule
 if TYPE_CHECKING:
     from polarcheck.columns.contour.passes import Passes
     from polarcheck.columns.contour.same_circle import SameCircle
-    from polarcheck.columns.contour.senses import Senses
+    from polarcheck.columns.contour.tangency import Tangency
     from polarcheck.foundation.arrays import Mask
     from polarcheck.rules.hit import Details, Hit
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     once="motion",
     doubts=(("compensation", "loop"), ("move", "loop")),
 )
-def arc_sense_reversed(senses: Senses, same_circle: SameCircle) -> Mask:
+def arc_sense_reversed(tangency: Tangency, same_circle: SameCircle) -> Mask:
     """
     G2 where G3 is meant at a corner, or the reverse.
 
@@ -82,21 +82,18 @@ def arc_sense_reversed(senses: Senses, same_circle: SameCircle) -> Mask:
         G40 X100.
         G13.1
     """
-    shown = (senses.tangent_in_loop > 0) & (senses.fitting_reversed_in_loop == 1)
-    return (senses.fits_reversed & (shown | senses.turns_back)) | same_circle.reversed
+    return tangency.is_reversed | same_circle.reversed
 
 
-def details(hit: Hit, senses: Senses, passes: Passes) -> Details:
+def details(hit: Hit, tangency: Tangency, passes: Passes) -> Details:
     import numpy as np
 
     from polarcheck.rules.wording.arcs import arc_code
 
-    corner, fits = senses.corner[hit.row], senses.fits_reversed[hit.row]
-    if np.isnan(corner):
-        at = int(np.flatnonzero(passes.row == hit.row)[0])
-        corner = np.degrees(np.nanmax(np.abs([turn[at] for turn in passes.turns])))
+    fits, move = tangency.fits_reversed[hit.row], int(np.searchsorted(passes.row, hit.row))
+    corners = np.abs([turn[move] for turn in passes.turns])
     return {
-        "corner": corner,
+        "corner": np.degrees(np.min(corners) if fits else np.nanmax(corners)),
         "code": arc_code(hit.trace, hit.row),
         "code_needed": arc_code(hit.trace, hit.row, reverse=True),
         "fit": "is tangent to the blocks before and after it" if fits else "lies on one circle with the other arcs",
