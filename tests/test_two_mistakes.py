@@ -57,7 +57,7 @@ def test_two_corners_beside_a_regular_polygon_are_told_with_their_words(slips: S
         needed, True
     )
     first, second = needed
-    assert f"with {needed[first]}, and {needed[second]} in line {second}, it" in findings[0].message
+    assert f"with {needed[first]}, and with {needed[second]} in line {second}, it" in findings[0].message
 
 
 @looped(("block", "wrong", "rule"), HIDING)

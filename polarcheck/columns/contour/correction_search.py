@@ -23,7 +23,7 @@ from polarcheck.columns.contour.loop_edits import outlines_of, with_edit
 from polarcheck.columns.contour.plane_loops import PlaneLoop
 from polarcheck.columns.contour.written_loop import AxisWords, WrittenLoop, written_loop
 from polarcheck.columns.trace import Trace
-from polarcheck.columns.words.slips import Slip, parts_of, plain_number, slip_of, slips_of
+from polarcheck.columns.words.slips import Slip, parts_of, plain_number, slip_of
 from polarcheck.foundation.arrays import Mask, Points, Rows, cached_property
 from polarcheck.geometry.regularity.symmetric_corners import each_once, is_lonely, missing_places, regular_polygons
 from polarcheck.geometry.regularity.symmetry import Symmetry
@@ -92,7 +92,7 @@ def corrections_of(
     row, word, key = search.content
     if key not in known:
         best = search.best()
-        symmetric = (search.of_two_corners() or search.of_two_words()) if best is None else (best,)
+        symmetric = search.of_two_words() if best is None else (best,)
         known[key] = Corrections(symmetric, None if symmetric else search.likely).moved(-row, -word)
     return known[key].moved(row, word)
 
@@ -305,23 +305,6 @@ class _Search:
                     moved[corner] += shift * axis.direction
                     yield _Trial(corner, word, slip._replace(text=address + slip.text), moved, self.loop)
 
-    def of_two_corners(self) -> tuple[Correction, ...]:
-        """The two words, each a slip of the pen, whose corners are off the regular polygon of all the others."""
-        tolerance = self.tolerance
-        for ring in islice(self.loop.rings, 1):
-            if ring.bulge.any() or len(ring) < _ODD_OF:
-                continue
-            for polygon in regular_polygons(ring.corner, tolerance, missing=2):
-                places = polygon[is_lonely(polygon, ring.corner, tolerance)]
-                odd = np.flatnonzero(is_lonely(self.loop.point, polygon, tolerance)).tolist()
-                slips = [[one for corner in odd if (one := self._slip(corner, place))] for place in places.tolist()]
-                if len(slips) == 2 and all(len(alike) == 1 for alike in slips):
-                    (one,), (two,) = slips
-                    symmetry = self.loop.symmetry(one.point + two.point - self.loop.point)
-                    if symmetry is not None and symmetry.is_regular and one.at != two.at:
-                        return self._both(one, two, _becomes(symmetry)), self._both(two, one, _becomes(symmetry))
-        return ()
-
     def of_two_words(self) -> tuple[Correction, ...]:
         """The two words with which the contour comes again in turns and mirrors."""
         for pair in likely_pairs(self.trace, self._compared, _MOST_PAIRS, _LEAST_GAIN):
@@ -341,24 +324,6 @@ class _Search:
                 remedy = f"{first.remedy}, and {second.remedy} in line {line},"
                 return first._replace(remedy=remedy, becomes=becomes), second._replace(becomes=becomes)
         return ()
-
-    def _slip(self, corner: int, place: complex) -> _Trial | None:
-        """The block with the one other word that leads it to a place, if it is a slip of the pen."""
-        away = [((place - self.loop.point[corner]) / axis.direction).real for axis in self._axes]
-        words = [(axis, int(axis.word[corner]), shift) for axis, shift in zip(self._axes, away, strict=True)]
-        words = [(axis, word, shift) for axis, word, shift in words if abs(shift) > self.tolerance]
-        if len(words) != 1 or words[0][1] < 0 or words[0][0].is_step[corner]:
-            return None
-        trial = self._elsewhere(corner, place, words)
-        written, needed = (parts_of(text)[1] for text in (self.trace.run.written(words[0][1]), trial.slip.text))
-        slip = next((slip for slip in slips_of(written) if float(slip.text) == float(needed)), None)
-        return None if slip is None else trial._replace(slip=slip._replace(text=trial.slip.text))
-
-    def _both(self, first: _Trial, second: _Trial, becomes: str) -> Correction:
-        """The first of two corrections, which names the second."""
-        row, line = self._row(first.at), int(self.trace.blocks.line[self._row(second.at)])
-        remedy = f"with {first.slip.text}, and {second.slip.text} in line {line},"
-        return Correction(row, first.word, first.slip.text, first.slip.kind, remedy, becomes)
 
     def _elsewhere(self, corner: int, place: complex, words: list[tuple[AxisWords, int, float]]) -> _Trial:
         """The block with other words, and what follows it with them."""

@@ -142,11 +142,11 @@ def likely_pairs(
     """
     The pairs of edits of different words that leave least to chance, each of which does so beside the other one.
 
-    least_gain: of the second edit, beside the first one.
+    least_gain: of the first edit, and of the second one beside it.
     """
     worse = {edit[:4] for edit, gain in zip(compared.edits, compared.gain[1:], strict=True) if gain < _LEAST_ALONE}
     found: dict[tuple[str, ...], tuple[float, Likely, Likely]] = {}
-    for number in _likeliest(compared, _FIRST_EDITS, LEAST_IF_WHOLE, is_one_of_two=True):
+    for number in _likeliest(compared, _FIRST_EDITS, least_gain, is_one_of_two=True):
         first = _likely(compared, number)
         if first.edit.kind in _OF_BLOCKS:
             continue
