@@ -9,7 +9,7 @@ import pytest
 from cases import looped
 from programs import report_of, said
 
-from polarcheck.checking import explanations
+from polarcheck.checking import explanations, hidden_findings
 from polarcheck.columns.contour import correction_search
 
 HEAD = ["O1", "T0101", "G98 G0 X60. Z2. C0", "G12.1", "G1 X50. F1500", "Z-4. F300"]
@@ -616,3 +616,20 @@ def test_two_words_that_make_it_symmetric_together_are_both_named(
     said_there = {(lines[line - 1], message) for message, line in told_of_small_cutter("\n".join(lines) + "\n")}
     assert {line for line, _ in said_there} == {*wrongs}
     assert all(any(f"with {word}" in message for _, message in said_there) for word in words)
+
+
+@pytest.mark.parametrize(
+    ("of_section", "of_run", "rows"), [(64, 512, 19_500), (0, 512, 0), (64, 0, 0)], ids=["rows", "section", "run"]
+)
+def test_edits_that_are_tried_are_counted_and_those_that_are_not_are_said(
+    of_section: int, of_run: int, rows: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(hidden_findings, "OF_SECTION", of_section)
+    monkeypatch.setattr(hidden_findings, "OF_RUN", of_run)
+    lines = [*HEAD[:3], *["G4 P1"] * rows, *HEAD[3:], *ROUNDED, *TAIL]
+    lines[lines.index("G3 X-34. C-10. R3.")] = "G3 X-34. C-10. R30."
+    report = report_of("\n".join(lines) + "\n")
+    assert report.findings
+    (entry,) = (entry for entry in report.not_evaluated if entry.rule == "nearly-regular-contour")
+    assert entry.reason.startswith(f"what explains the findings in the section of line {lines.index('G12.1') + 1} was")
+    assert (entry.matters, entry.blocks) == (False, len(lines) - lines.index("G12.1") - 2)

@@ -28,7 +28,7 @@ from polarcheck.checking.code_edits import (
 )
 from polarcheck.checking.edits import origins
 from polarcheck.checking.engine import Engine, with_following
-from polarcheck.checking.hidden_findings import MOST_ROWS, REPORTS, edited, is_told, with_hidden
+from polarcheck.checking.hidden_findings import REPORTS, TrialCount, edited, is_told, with_hidden
 from polarcheck.columns.contour.correction import Correction
 from polarcheck.columns.contour.likely_edits import (
     AS_LIKELY,
@@ -112,9 +112,10 @@ def explained(engine: Engine, findings: list[Finding], number: int, less_regular
     regular to which no rule objects; that is a finding, too.
     """
     source = engine.trace.text.source
-    if REPORTS not in engine.rules or source.parts or source.channel or len(engine.trace) > MOST_ROWS:
+    if REPORTS not in engine.rules or source.parts or source.channel:
         return findings
-    findings, partly, whole = _explained(engine, findings, number, less_regular)
+    count = TrialCount(engine.trace)
+    findings, partly, whole = _explained(engine, findings, number, less_regular, count)
     clear = {source.line_of(start) for start, _, _ in whole}
     hiding = [finding for finding in findings if finding.line not in clear]
     try:
@@ -124,14 +125,17 @@ def explained(engine: Engine, findings: list[Finding], number: int, less_regular
             hiding,
             number,
             partly,
-            lambda trial, found: _explained(trial, found, number, less_regular)[0],
+            lambda trial, found: _explained(trial, found, number, less_regular, count)[0],
+            count,
         )
     except TooHardError:
         return findings
+    finally:
+        engine.unlisted += count.not_searched()
 
 
 def _explained(
-    engine: Engine, findings: list[Finding], number: int, less_regular: LessRegular
+    engine: Engine, findings: list[Finding], number: int, less_regular: LessRegular, count: TrialCount
 ) -> tuple[list[Finding], list[Replace], list[Replace]]:
     """The findings, with those that one edit explains under it; the edits that leave others, and those that do not."""
     trace = engine.trace
@@ -139,7 +143,7 @@ def _explained(
     partly: list[Replace] = []
     whole: list[Replace] = []
     if symptoms:
-        search = _Search(engine, number, {finding.rule for finding in findings if is_told(finding)})
+        search = _Search(engine, number, {finding.rule for finding in findings if is_told(finding)}, count)
         try:
             for explanation in search.explanations(symptoms):
                 findings = _under(engine, findings, explanation)
@@ -166,12 +170,12 @@ def _lines(finding: Finding) -> set[int]:
 
 
 class _Search:
-    def __init__(self, engine: Engine, number: int, told: set[str]) -> None:
-        self.engine, self.trace, self.number = engine, engine.trace, number
+    def __init__(self, engine: Engine, number: int, told: set[str], count: TrialCount) -> None:
+        self.engine, self.trace, self.number, self.count = engine, engine.trace, number, count
         rules = (rule for rule in engine.rules.values() if not rule.of_text and rule.over == "rows")
         # What a rule only notes is a warning or an error where others follow from it.
         self.rules = [rule for rule in rules if rule.name in told or _warns(engine, rule)]
-        self.rows_left = MOST_ROWS
+        self.section_line = 0
         # What is explained is mended when the next path is tried, which may be compared with it.
         self.mended: list[Replace] = []
         self.symptoms = _symptoms(engine, self.rules)
@@ -186,7 +190,9 @@ class _Search:
             self.compared |= {line: other for line in pair for other in pair - {line}}
         rows = np.flatnonzero(np.isin(trace.blocks.line, [*lines]) & (trace.mode.section >= 0))
         sections = np.flatnonzero(np.bincount(trace.mode.section[rows], minlength=1)).tolist()
-        loops = list(islice(written_loops(trace, sections), _MOST_LOOPS))
+        loops = list(islice(written_loops(trace, sections), _MOST_LOOPS + 1))
+        if len(loops) > _MOST_LOOPS:
+            self.count.stopped.add(self._line_of_section(loops.pop()))
         begins = [max(int(loop.row[0]) - 1, 0) for loop in loops]
         ends = [*(int(loop.row[1]) for loop in loops[1:]), len(trace)]
         reach = [set(trace.blocks.line[slice(*rows)].tolist()) for rows in zip(begins, ends, strict=False)]
@@ -194,12 +200,17 @@ class _Search:
         for loop, own_lines in zip(loops, reach, strict=True):
             own = {(finding.rule, finding.line) for finding in findings if _lines(finding) & own_lines}
             if not own <= known:
+                self.section_line = self._line_of_section(loop)
                 others = (other for other in reach if other is not own_lines and other & lines)
                 for found in self._explained(loop, own_lines, set[int]().union(*others) - own_lines):
                     known |= found.gone
                     self.mended += found.edits
                     self.symptoms = found.left
                     yield found
+
+    def _line_of_section(self, loop: WrittenLoop) -> int:
+        mode = self.trace.mode
+        return int(self.trace.blocks.line[mode.sections.enter[mode.section[loop.row[1]]]])
 
     def _explained(self, loop: WrittenLoop, own: set[int], others: set[int]) -> list[_Explained]:
         """
@@ -218,6 +229,8 @@ class _Search:
         # What makes the path symmetric is named already: only what is clear is likelier.
         least = LEAST_GAIN if rules == {REPORTS} else LEAST_IF_WHOLE
         compared = None if whole else all_compared(self.trace, loop)
+        if compared is not None and not compared.edits:
+            self.count.stopped.add(self.section_line)
         for likely in () if compared is None else likely_edits(compared, _TRIALS, least):
             best, reach = (whole, AS_LIKELY) if whole else (partly, _LESS_LIKELY)
             if best and best[0].likely.gain - likely.gain > reach:
@@ -327,9 +340,6 @@ class _Search:
 
         Behind an arc that was none others may come, which nothing could show before.
         """
-        if self.rows_left < len(self.trace):
-            return None
-        self.rows_left -= len(self.trace)
         trial = self._trial(edits)
         if trial is None:
             return None
@@ -374,6 +384,8 @@ class _Search:
     def _trial(self, edits: list[Replace]) -> Callable[[Iterable[Rule]], frozenset[_Symptom]] | None:
         """What rules find in the program with these edits; None where it cannot be read as before."""
         source, engine = self.trace.text.source, self.engine
+        if not self.count.counted(self.section_line):
+            return None
         edits = [*self.mended, *edits]
         trial = edited(engine, self.number, edits, self.rules)
         if trial is None:

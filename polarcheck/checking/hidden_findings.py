@@ -7,6 +7,7 @@ found without the first mistake is no consequence of it.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 
@@ -15,8 +16,17 @@ import numpy as np
 
 from polarcheck.checking.edits import applied, spans
 from polarcheck.checking.engine import Engine
+from polarcheck.columns.trace import Trace
 from polarcheck.columns.words.slips import WORD
-from polarcheck.foundation.finding import SEVERITIES, WARNING, Finding, Silenced, Undecided, each_finding
+from polarcheck.foundation.finding import (
+    SEVERITIES,
+    WARNING,
+    Finding,
+    NotEvaluated,
+    Silenced,
+    Undecided,
+    each_finding,
+)
 from polarcheck.foundation.states import Motion, Side
 from polarcheck.program.execution.runs import runs
 from polarcheck.program.reading.source import read_source
@@ -26,8 +36,11 @@ from polarcheck.rules.tables import Tables
 
 #: The rule that reports an edit which explains findings; it is no symptom.
 REPORTS = "nearly-regular-contour"
-#: Checks of a program for what is hidden in it, and rows of all trials of a file.
-_MOST_CHECKS, MOST_ROWS = 6, 20_000
+#: Programs with an edit that are checked for what is found in one section, and in all of a run; one counts for each of
+#: so many of its rows.
+OF_SECTION, OF_RUN, _ROWS = 64, 512, 300
+#: Of these, those for what is hidden in a program.
+_MOST_CHECKS = 6
 #: Addresses that are not written for the second axis by mistake: the linear axis, codes.
 _NOT_MISTAKEN = "XUGM"
 
@@ -35,6 +48,45 @@ _NOT_MISTAKEN = "XUGM"
 Explain = Callable[[Engine, list[Finding]], list[Finding]]
 #: A rule and a line at which it fires.
 Symptom = tuple[str, int]
+
+
+class TrialCount:
+    """
+    The programs with an edit that are checked in a run: they are counted, so that each machine gives the same report.
+
+    trace: of the program as it is written. counts: by the line where a section begins. stopped: such lines of sections
+    in which not all was searched.
+    """
+
+    def __init__(self, trace: Trace) -> None:
+        self.trace = trace
+        self.counts = Counter[int]()
+        self.stopped: set[int] = set()
+
+    def counted(self, section_line: int) -> bool:
+        """Count one more program for a section; False where that is beyond a bound."""
+        cost = -(-len(self.trace) // _ROWS)
+        fits = self.counts[section_line] + cost <= OF_SECTION and self.counts.total() + cost <= OF_RUN
+        if fits:
+            self.counts[section_line] += cost
+        else:
+            self.stopped.add(section_line)
+        return fits
+
+    def not_searched(self) -> list[NotEvaluated]:
+        """What is said of the sections in which not all was searched."""
+        mode, line = self.trace.mode, self.trace.blocks.line
+        reason = f"was not searched to the end (at most {OF_SECTION} edits of a section and {OF_RUN} of all are tried)"
+        enters = line[mode.sections.enter]
+        return [
+            NotEvaluated(
+                rule=REPORTS,
+                reason=f"what explains the findings in the section of line {first} {reason}",
+                blocks=int(np.isin(mode.section, np.flatnonzero(enters == first)).sum()),
+                matters=False,
+            )
+            for first in sorted(self.stopped)
+        ]
 
 
 def edited(engine: Engine, number: int, edits: Sequence[Replace], rules: Sequence[Rule]) -> Engine | None:
@@ -58,27 +110,29 @@ def with_hidden(
     number: int,
     edits: Sequence[Replace],
     explain: Explain,
+    count: TrialCount,
 ) -> list[Finding]:
     """
     Return the findings, with those of the same sections that are found without what hides them.
 
     hiding: those that may hide others. number: of the run. edits: they explain findings, and leave others. explain:
-    lists under explanations what they explain.
+    lists under explanations what they explain. count: of the run.
     """
     hiding = [finding for finding in hiding if is_told(finding) and engine.rules[finding.rule].doubts]
     if engine.allows is not None or not (hiding or edits):
         return findings
-    trials = _Trials(engine, number, explain)
+    trials = _Trials(engine, number, explain, count)
     source = engine.trace.text.source
     lines = {source.line_of(start) for start, _, _ in edits}
     sections = {finding.section_line for finding in findings if finding.line in lines}
-    edits, left = [*edits], trials.findings(edits) if edits else findings
+    edits, left = [*edits], trials.findings(edits, min(filter(None, sections), default=0)) if edits else findings
     for finding in hiding:
         if left is None:
             return findings
         tried, before = [], symptoms(left)
         for repair in _repairs(engine, finding):
-            others = trials.findings([*edits, *repair], partial(_may_be_gone, finding, before))
+            may_count = partial(_may_be_gone, finding, before)
+            others = trials.findings([*edits, *repair], finding.section_line or 0, may_count)
             if others is not None and _is_gone(finding, before, symptoms(others)):
                 repaired = {source.line_of(start) for start, _, _ in repair}
                 tried.append((sum(other.line in repaired for other in others), len(others), repair, others))
@@ -131,20 +185,27 @@ def _may_be_gone(finding: Finding, before: set[Symptom], after: set[Symptom]) ->
 
 
 class _Trials:
-    def __init__(self, engine: Engine, number: int, explain: Explain) -> None:
-        self.engine, self.number, self.explain = engine, number, explain
-        self.left = min(_MOST_CHECKS, MOST_ROWS // len(engine.trace))
+    def __init__(self, engine: Engine, number: int, explain: Explain, count: TrialCount) -> None:
+        self.engine, self.number, self.explain, self.count = engine, number, explain, count
+        self.left = _MOST_CHECKS
 
     def findings(
-        self, edits: Sequence[Replace], may_count: Callable[[set[Symptom]], bool] | None = None
+        self,
+        edits: Sequence[Replace],
+        section_line: int,
+        may_count: Callable[[set[Symptom]], bool] | None = None,
     ) -> list[Finding] | None:
         """
         The findings of the program with these edits; None where its lines are others then, or too many are tried.
 
+        section_line: of the section that is counted.
         may_count: for symptoms that are not explained yet; they are explained where it is True.
         """
+        if any("\n" in text for _, _, text in edits) or not self.count.counted(section_line):
+            return None
         self.left -= 1
-        if self.left < 0 or any("\n" in text for _, _, text in edits):
+        if self.left < 0:
+            self.count.stopped.add(section_line)
             return None
         trial = edited(self.engine, self.number, edits, [*self.engine.rules.values()])
         lines = self.engine.trace.text.source.line_starts
