@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import atexit
 import os
 import sys
 from collections.abc import Iterable
@@ -17,6 +18,9 @@ except KeyboardInterrupt:
 def run() -> None:
     """Run the command line; never returns."""
     ending.end_on_signals()
+    statuses: list[int] = []
+    if not atexit._ncallbacks():  # what is registered first is called last
+        atexit.register(ending.leave, statuses)
     try:
         from polarcheck.files.cache import repeats
 
@@ -28,6 +32,10 @@ def run() -> None:
         commands.run()
     except KeyboardInterrupt as stop:  # raised outside the code that handles it, or a second time
         ending.end_by(stop)
+    except SystemExit as stop:
+        if isinstance(stop.code, int):
+            statuses.append(stop.code)
+        raise
     except Exception as error:
         if not ending.is_of_memory(error):
             raise

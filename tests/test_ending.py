@@ -99,6 +99,27 @@ def test_a_signal_after_the_report_ends_the_process_in_a_line(number: int, statu
     assert "1 file" in report
 
 
+#: What a process still has to do when its command has ended; `first` is freed where Python itself ends the process.
+LATE = """
+import atexit, sys, threading, time
+class Last:
+    def __del__(self, write=sys.stderr.write): write("freed ")
+sys.modules["last"] = Last()
+atexit.register(print, "registered", file=sys.stderr, end=" ")
+threading.Thread(target=lambda: (time.sleep(2), print("thread"))).start()
+"""
+
+
+def test_the_end_waits_for_threads_and_for_what_is_registered() -> None:
+    """Without freeing objects, and with the exit code of the check; with them where something else comes last."""
+    code = AT_IMPORT.format(module="numpy", happens=f"exec({LATE!r}, {{}})")
+    first = "import atexit; atexit.register(print, 'last', end='');"
+    for before, said in (("", "registered "), (first, "registered freed ")):
+        status, report, told = run(before + code, "check", "missing.nc", "--select", "rapid-in-polar")
+        assert (status, told.partition("\n")[2]) == (2, said)
+        assert report.endswith("thread\n" + "last" * bool(before))
+
+
 @pytest.mark.nightly
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_a_signal_that_is_ignored_stays_so(number: int) -> None:

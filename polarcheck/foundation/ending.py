@@ -6,6 +6,8 @@ import contextlib
 import errno
 import os
 import signal
+import sys
+from collections.abc import Sequence
 from typing import Any, NoReturn
 
 #: Exit codes as shells count them: 128 plus the number of the signal.
@@ -46,6 +48,19 @@ def end(status: int, message: str) -> NoReturn:
     with contextlib.suppress(OSError):
         os.write(2, f"polarcheck: {message}\n".encode())
     os._exit(status)
+
+
+def leave(statuses: Sequence[int]) -> None:
+    """
+    End with the first status without freeing each object, which takes 2 % of a small check; call it last of all.
+
+    Returns where there is no status, or where a standard stream cannot be written: Python then says so.
+    """
+    with contextlib.suppress(OSError, ValueError, AttributeError):  # full, closed, or there is none
+        if statuses:
+            sys.stdout.flush()
+            sys.stderr.flush()
+            os._exit(statuses[0])
 
 
 def is_of_memory(error: BaseException) -> bool:
