@@ -14,7 +14,9 @@ Standard error names the part of the page that is measured, and how long that to
 from __future__ import annotations
 
 import argparse
+import cmath
 import contextlib
+import math
 import os
 import platform
 import re
@@ -29,7 +31,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import editor
-from contour_costs import CASES, Cost, cost
+from contour_costs import CASES, Cost, cost, half_circles
 from measuring import ROOT, SLOW, SLOW_ROUNDS, Taken, apart, exponent, measured, output, ratio, run, table
 from peer_faults import FAULTS, GOOD, TOOL
 from stages import stages
@@ -49,6 +51,8 @@ LARGE = 1_000_000
 _MANY, _BLOCKS_OF_MANY = 40, 10_000
 #: Of the program that other commands than `check` are given, and letters of a line without anything else.
 _BLOCKS_OF_COMMANDS, _LETTERS = 20_000, 12_000_000
+#: Radius of a circle that is drawn [mm], and of how many lines it is drawn.
+_CIRCLE, _LINES = 20, (60, 400)
 #: Limits of a contour [s], [GB].
 _LIMITS = 120, 8
 _REGEX = "a bare regex"
@@ -300,6 +304,39 @@ def contours(asked: argparse.Namespace, folder: Path) -> str:
     return table(["contour", "CPU s", "with R", "ratio", "peak MB"], rows)
 
 
+def drawings(asked: argparse.Namespace, folder: Path) -> str:
+    """A circle that is milled, and drawn as a circle or as lines with gaps between them."""
+    program = folder / "circle.nc"
+    program.write_bytes(half_circles(2, _CIRCLE))
+    commands = {}
+    for count in (0, *_LINES):
+        path = folder / f"circle_{count}.dxf"
+        path.write_text(drawn_circle(count), "ascii")
+        name = f"{count} LINEs with gaps" if count else "a CIRCLE"
+        options = ["--no-config", "--tool=1:radius=5,nose=0", "--drawing", str(path)]
+        commands[name] = [*_POLARCHECK, "part", *options, str(program)]
+    taken = measured(commands, asked.rounds)
+    return table(
+        ["drawing", "CPU s", "to the CIRCLE", "exit"],
+        [
+            [name, f"{one.cpu:.2f}", f"{ratio(one.cpus, taken['a CIRCLE'].cpus):.2f}", str(one.status)]
+            for name, one in taken.items()
+        ],
+    )
+
+
+def drawn_circle(lines: int) -> str:
+    """A drawing of a circle as so many lines, each with a gap of a fifth of it at its ends; 0 for a CIRCLE."""
+    corners = [cmath.rect(_CIRCLE, math.tau * number / lines) for number in range(lines)]
+    groups = [(0, "CIRCLE"), (8, 0), (10, 0), (20, 0), (40, _CIRCLE)] if not lines else []
+    for start, end in zip(corners, [*corners[1:], *corners[:1]], strict=True):
+        first, last = start + (end - start) / 10, end - (end - start) / 10
+        groups += [(0, "LINE"), (8, 0), (10, first.real), (20, first.imag), (11, last.real), (21, last.imag)]
+    head = [(0, "SECTION"), (2, "HEADER"), (9, "$ACADVER"), (1, "AC1009"), (9, "$INSUNITS"), (70, 4), (0, "ENDSEC")]
+    groups = [*head, (0, "SECTION"), (2, "ENTITIES"), *groups, (0, "ENDSEC"), (0, "EOF")]
+    return "".join(f"{code}\n{value}\n" for code, value in groups)
+
+
 def growth(asked: argparse.Namespace, folder: Path) -> str:
     """Programs of more and more blocks, and the exponents of time and memory."""
     sizes = [size for size in SIZES if size <= asked.blocks or not asked.quick]
@@ -424,6 +461,7 @@ The program of `benchmarks/generate.py` with {min(_BLOCKS_OF_COMMANDS, asked.blo
         "Long lines": "A file that is one line of one letter.",
         "Contours": """\
 Those of `benchmarks/contour_costs.py`, which says what is hard about each; without the start of the process.""",
+        "Drawings": f"`part --drawing` of a circle of {2 * _CIRCLE} mm that is milled in two arcs.",
         "Growth": f"Without a cutter; from {LARGE:,} blocks on one run each.",
         "What is found": f"""\
 {len(FAULTS)} programs with one fault each (`benchmarks/peer_faults.py`), and the sound one. A reader names a fault
@@ -463,6 +501,7 @@ PARTS = {
     "Other commands": commands,
     "Long lines": long_line,
     "Contours": contours,
+    "Drawings": drawings,
     "Growth": growth,
     "What is found": findings,
     "Where the time goes": both_stages,

@@ -119,7 +119,7 @@ def test_the_page_is_written_without_any_peer(tmp_path: Path, monkeypatch: pytes
     text = page.read_text()
     assert "Not installed there, and left out: LinuxCNC rs274, nc-gcode-interpreter, pygcode, nctab, ncplot7py." in text
     assert re.search(r"^\| polarcheck \| 0 \| 1 \| 1 \|$", text, re.MULTILINE)
-    for name in ("hexagon", "plot", "60,000 times A"):
+    for name in ("hexagon", "plot", "60,000 times A", "400 LINEs with gaps"):
         assert re.search(rf"^\| {name} \| \d+\.\d\d \|", text, re.MULTILINE), name
     assert len(re.findall(r"^\| total \|", text, re.MULTILINE)) == 3
 
