@@ -816,3 +816,25 @@ def test_a_straight_move_outside_of_sections_may_be_divided(control: str, tmp_pa
         text = program(control, (place, whole.replace(old, new)))
         assert compared(tmp_path, control, sound, text).exit_code == code
         assert certified(tmp_path, control, sound, text).exit_code == code
+
+
+@looped(
+    ("control", "words", "verdict"),
+    [
+        *itertools.product(
+            ("fanuc-30i", "haas-lathe", "gsk-988"),
+            ("G10 L2 P2 X#500", "G54/G10 L2 P2 X#500", "#5241=#500", "G55/#5261=#500"),
+            ("pass",),
+        ),
+        *itertools.product(
+            ("fanuc-30i", "haas-lathe", "gsk-988"),
+            ("G10 L2 P1 X#500", "G10 L2 P0 X#500", "G55/G10 L2 P2 X#500", "#5201=#500", "G55/#5241=#500"),
+            ("unverified",),
+        ),
+        *(("fanuc-30i", f"{code}G10 L20 P1 X#500", "unverified") for code in ("G54.1 P1/", "G54.1 P#500/")),
+        *(("fanuc-30i", f"{code}G10 L20 P1 X#500", "pass") for code in ("", "G54.1 P2/")),
+    ],
+)
+def test_a_work_offset_of_no_section_leaves_nothing_open(control: str, words: str, verdict: str) -> None:
+    text = program(control, ("/G0 X60", f"/{words}/G0 X60"))
+    assert report_of(text, control, CUTTER).verdict == verdict

@@ -10,7 +10,7 @@ import numpy as np
 from polarcheck.columns.filling import fill_down, positions
 from polarcheck.columns.modes.offset_settings import Settings, X, in_order, of_list
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, cached_property, different, repeated
+from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, cached_property, different, is_among, repeated
 from polarcheck.program.machines.code_lists import numbers
 from polarcheck.program.machines.offset_calls import steps_above
 
@@ -115,8 +115,16 @@ class Origin(Columns, frozen=True):
 
     @cached_property
     def set_to_unknown(self) -> Rows:
-        """The rows that set X of a work offset to a value that is not known."""
-        return different(self._settings.row[np.isnan(self._settings.value)])
+        """The rows that set X of a work offset that counts in a section to a value that is not known."""
+        number = self._settings.number
+        # Of G54.1 P#500 it may be any of the further ones.
+        counts = is_among(number, sorted(self._in_sections)) | ((_EXTENDED in self._in_sections) & (number > _EXTENDED))
+        return different(self._settings.row[np.isnan(self._settings.value) & counts])
+
+    @cached_property
+    def _in_sections(self) -> set[int]:
+        """The numbers of the work offsets in force where sections begin, and of what is added to them."""
+        return {_EXTERNAL, _SHIFT, *self._number[self.trace.mode.sections.enter].astype(np.int64).tolist()}
 
     def _x_of(self, number: float) -> tuple[Floats, Rows]:
         """X of a work offset in each row, NaN where it is not known, and the row that has set it; -1 where none has."""
@@ -145,7 +153,7 @@ class Origin(Columns, frozen=True):
         Only of those that are in force at a G12.1: a program may set many more.
         """
         trace = self.trace
-        selected = set(self._number[trace.mode.sections.enter].tolist()) - {_EXTERNAL, _SHIFT}
+        selected = self._in_sections - {_EXTERNAL, _SHIFT}
         x, setter = np.zeros(len(trace)), np.full(len(trace), -1)
         for number in sorted({*self._of_job, *self._settings.number.tolist()} & selected):
             in_force = self._number == number

@@ -88,12 +88,13 @@ class UnknownWords(Columns, frozen=True):
 
     @cached_property
     def _sets_origin(self) -> Mask:
-        """Per executed word: X of data input of a work offset."""
+        """Per executed word: X of data input of a work offset that counts in a section, or of an unknown one."""
         trace = self.trace
         kind, number = trace.blocks.word("L"), trace.blocks.word("P")
         # Without L P0 is the work shift; other numbers are tool offsets.
         is_origin = np.isin(kind, (0, *trace.machine.g_codes.data_input_work_offset)) | (np.isnan(kind) & ~(number > 0))
-        rows = trace.blocks.listed("data_input") & is_origin
+        counts = trace.blocks.is_unknown("P") | trace.blocks.mask_of(Origin(trace).set_to_unknown)
+        rows = trace.blocks.listed("data_input") & is_origin & (counts | (trace.mode.section >= 0))
         return np.asarray(rows[trace.run.row] & trace.blocks.words_at(trace.blocks.word_indices("X", "U")))
 
     @cached_property
