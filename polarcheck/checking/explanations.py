@@ -151,7 +151,8 @@ def _explained(
                 edits += explanation.edits
         except TooHardError:
             pass  # what was found before stands
-    lines = {line for finding in findings for line in (finding.line, *(other.line for other in finding.follows))}
+    stated = [part for finding in findings if is_told(finding) for part in (finding, *finding.follows)]
+    lines = {finding.line for finding in stated}
     unexplained = []
     for rows, correction in less_regular(engine):
         if lines.isdisjoint(trace.blocks.line[rows[0] : rows[-1] + _AROUND].tolist()):

@@ -88,7 +88,9 @@ def chances_of(outlines: Outlines, tolerance: float) -> Chances:
         chord / np.maximum(length, _NONE),
     )
     bend = np.where(is_circle, 0.0, turns * sweep / 2)
-    turn, beside_arc, meets = _turns(direction, bend, moves | is_circle, is_arc)
+    kind = np.where(_is_about_axis(outlines, tolerance), 1, 2) * is_arc
+    turn, beside, meets = _turns(direction, bend, moves | is_circle, kind)
+    beside_arc, beside_free_arc = beside > 0, beside > 1
     is_corner = meets & (np.abs(turn) >= _TANGENT)
     left, right = ((is_corner & (sign * turn > 0)).sum(axis=1) for sign in (1, -1))
     last = np.arange(point.shape[1])[-_ENDS:, None]
@@ -109,10 +111,10 @@ def chances_of(outlines: Outlines, tolerance: float) -> Chances:
         others += _OF_COORDINATE * np.minimum(_different(np.abs(part), tolerance), _different(part, tolerance))
     return Chances(
         is_broken.sum(axis=1),
-        (is_corner & beside_arc).sum(axis=1),
+        (is_corner & beside_free_arc).sum(axis=1),
         (meets & (np.abs(turn) > np.pi - _TANGENT)).sum(axis=1),
         ((ends.min(axis=(1, 2)) > tolerance) & ~_overlaps(point, turns, tolerance)).astype(np.int64),
-        (is_corner & ~beside_arc).sum(axis=1),
+        (is_corner & ~beside_free_arc).sum(axis=1),
         others,
     )
 
@@ -131,6 +133,15 @@ def _overlaps(point: Points, turns: Rows, tolerance: float) -> Mask:
     ]
     crosses = are_aside[0] & are_aside[1] & (turns[:, 0] == 0) & (turns[:, -1] == 0)
     return np.asarray(overlaps | crosses)
+
+
+def _is_about_axis(outlines: Outlines, tolerance: float) -> Mask:
+    """The edges that would be a part of the round bar, if they are arcs: the axis is at 0."""
+    point, turns, radius, to_center = outlines
+    start, end, size = point[:, :-1], point[:, 1:], np.abs(radius)
+    on_bar = np.maximum(np.abs(np.abs(start) - size), np.abs(np.abs(end) - size)) <= 2 * tolerance
+    on_bar &= turns * np.sign(radius) * cross(start, end) >= -tolerance * size
+    return np.asarray(np.where(np.isnan(radius), np.abs(start + to_center) <= 2 * tolerance, on_bar))
 
 
 def _sweeps(outlines: Outlines, length: Floats, moves: Mask, tolerance: float) -> tuple[Floats, Mask, Floats]:
@@ -162,8 +173,8 @@ def _sweeps(outlines: Outlines, length: Floats, moves: Mask, tolerance: float) -
     return swept, broken, off
 
 
-def _turns(direction: Points, bend: Floats, is_edge: Mask, is_arc: Mask) -> tuple[Floats, Mask, Mask]:
-    """By which angle the path turns where each edge begins [rad]; whether one of them is an arc; whether two meet."""
+def _turns(direction: Points, bend: Floats, is_edge: Mask, kind: Rows) -> tuple[Floats, Rows, Mask]:
+    """By which angle the path turns where each edge begins [rad]; the larger kind of both edges; whether two meet."""
     begins, ends, bent = direction.copy(), direction.copy(), (bend != 0).any(axis=0)
     begins[:, bent] *= np.exp(-1j * bend[:, bent])
     ends[:, bent] *= np.exp(1j * bend[:, bent])
@@ -171,8 +182,8 @@ def _turns(direction: Points, bend: Floats, is_edge: Mask, is_arc: Mask) -> tupl
     before = np.concatenate([np.full((len(number), 1), -1), number[:, :-1]], axis=1)
     meets = is_edge & (before >= 0)
     into = np.take_along_axis(ends, np.maximum(before, 0), axis=1)
-    of_arc = is_arc | np.take_along_axis(is_arc, np.maximum(before, 0), axis=1)
-    return np.where(meets, np.angle(begins * into.conj()), 0.0), of_arc, meets
+    of_both = np.maximum(kind, np.take_along_axis(kind, np.maximum(before, 0), axis=1))
+    return np.where(meets, np.angle(begins * into.conj()), 0.0), of_both, meets
 
 
 def _different(values: Floats, tolerance: float) -> Rows:
