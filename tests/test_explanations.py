@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 
+import numpy as np
 import pytest
 from cases import looped
 from programs import report_of, said
@@ -318,10 +319,39 @@ FREE = [
 KEYED = ["G42 X39. C0 F200", "C11.258", "X0 C22.517", "X-35. C12.413", "C-12.413", "X0 C-22.517", "X39. C-11.258", "C0"]
 
 
+#: Two flats of a round bar.
+DOUBLE_D = [
+    *("G42 X30. C0 F200", "C13.229", "G3 X-30. C13.229 R20.", "G1 C-13.229", "G3 X30. C-13.229 R20.", "G1 C0"),
+    "G40 X50.",
+]
+#: Six teeth, begun in the middle of one.
+_TEETH = [
+    place * turn
+    for turn in np.exp(1j * np.radians(60) * np.arange(6))
+    for place in (
+        18 * np.exp(0.2j),
+        12 * np.exp(0.24j),
+        12 * np.exp(1j * np.pi / 3 - 0.24j),
+        18 * np.exp(1j * np.pi / 3 - 0.2j),
+    )
+]
+TEETH = [
+    "G42 X35.282 C0 F200",
+    *(f"X{2 * place.real:.3f} C{place.imag:.3f}" for place in _TEETH),
+    *("X35.282 C0", "G40 X50."),
+]
+
+
 @pytest.mark.ci
 @looped(
     ("contour", "right", "wrong", "words"),
     [
+        # The corners of what is left of the bar are meant.
+        (DOUBLE_D, "G1 C-13.229", "G1 C-63.229", ["with C-13.229"]),
+        # Six turns say more than a half turn or a mirror.
+        (TEETH, TEETH[6], TEETH[6].replace("C", "C-"), [f"with {TEETH[6].split()[1]} it would look the same"]),
+        (TEETH, TEETH[9], TEETH[9].replace("C", "C-"), [f"with {TEETH[9].split()[1]} it would look the same"]),
+        (TEETH, TEETH[10], f"{TEETH[9].split()[0]} {TEETH[10].split()[1]}", [f"with {TEETH[10].split()[0]} it would"]),
         (FREE, "G3 X-35.02 C-1.181 R1.5", "G3 X-35.02 C-0.591 R1.5", ["with C-1.182 its arcs would be tangent"]),
         # Either word would make it its own mirror image.
         (KEYED, "X0 C22.517", "X0", ["with C-11.258", "or with C22.517 in line"]),

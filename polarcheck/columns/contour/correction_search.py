@@ -23,7 +23,7 @@ from polarcheck.columns.contour.loop_edits import outlines_of, with_edit
 from polarcheck.columns.contour.plane_loops import PlaneLoop
 from polarcheck.columns.contour.written_loop import AxisWords, WrittenLoop, written_loop
 from polarcheck.columns.trace import Trace
-from polarcheck.columns.words.slips import Slip, parts_of, plain_number, slip_of
+from polarcheck.columns.words.slips import Slip, parts_of, plain_number, slip_of, slips_of
 from polarcheck.foundation.arrays import Mask, Points, Rows, cached_property
 from polarcheck.geometry.regularity.symmetric_corners import each_once, is_lonely, missing_places, regular_polygons
 from polarcheck.geometry.regularity.symmetry import Symmetry
@@ -106,15 +106,18 @@ class _Search:
         point = each_once(self.loop.point, self.tolerance)
         if len(point) < _CORNERS - 1:
             return None
-        if (correction := self._of_edits()) is not None:
-            return correction
-        trials = [*self._fitting(self._of_steps())] or [*self._fitting(self._of_odd_corner())]
-        if not trials:
-            # The ends of leads are no corners, and where leads cross is one.
-            rings = (ring.corner for ring in islice(self.loop.rings, 1))
-            found = [missing_places(points, self.tolerance) for points in (point, point[1:-1], *rings)]
-            places = each_once(np.concatenate(found), self.tolerance)
-            trials = [*self._fitting(self._of_blocks(places))] if len(places) else []
+        edit = self._of_edits()
+        if edit is not None and edit[0].order > _HALF_TURN:
+            return edit[1]
+        # The ends of leads are no corners, and where leads cross is one.
+        rings = (ring.corner for ring in islice(self.loop.rings, 1))
+        missing = [missing_places(points, self.tolerance) for points in (point, point[1:-1], *rings)]
+        places = each_once(np.concatenate(missing), self.tolerance)
+        trials = [*self._fitting(self._of_places(places))]
+        if edit is not None:
+            return min([(edit[0].freedom, -1, edit[1]), *trials], key=lambda trial: trial[:2])[2]
+        trials = trials or [*self._fitting(self._of_steps())] or [*self._fitting(self._of_odd_corner())]
+        trials = trials or ([*self._fitting(self._of_blocks(places))] if len(places) else [])
         return min(trials, key=lambda trial: trial[:2])[2] if trials else None
 
     def _fitting(self, trials: Iterator[_Trial]) -> Iterator[tuple[int, int, Correction]]:
@@ -216,7 +219,7 @@ class _Search:
     def _compared(self) -> Compared:
         return all_compared(self.trace, self._written)
 
-    def _of_edits(self) -> Correction | None:
+    def _of_edits(self) -> tuple[Symmetry, Correction] | None:
         """The likeliest edit that makes the contour symmetric; where one in another block is as likely, with that."""
         # Where sides are divided, the number of different lengths tells nothing.
         may_be_likely = not _are_within_sides(self.loop.point, self.loop.turns).any()
@@ -249,7 +252,7 @@ class _Search:
                 line = int(self.trace.blocks.line[other.row])
                 correction = correction._replace(remedy=f"{correction.remedy}, or {other.remedy} in line {line},")
                 break
-        return correction._replace(becomes=_becomes(symmetry))
+        return symmetry, correction._replace(becomes=_becomes(symmetry))
 
     def _is_clear(self, likely: Likely, symmetry: Symmetry, moves_side: bool) -> bool:
         """An edit closes the contour, or makes all its arcs tangent or the contour more symmetric, and is no chance."""
@@ -324,6 +327,27 @@ class _Search:
                 remedy = f"{first.remedy}, and {second.remedy} in line {line},"
                 return first._replace(remedy=remedy, becomes=becomes), second._replace(becomes=becomes)
         return ()
+
+    def _of_places(self, places: Points) -> Iterator[_Trial]:
+        """Blocks with one other word, each with one of these places for its end."""
+        for place in places.tolist():
+            for corner in range(len(self.loop.point)):
+                if (trial := self._slip(corner, place)) is not None:
+                    yield trial._replace(slip=trial.slip._replace(plain=False))
+
+    def _slip(self, corner: int, place: complex) -> _Trial | None:
+        """The block with the one other word that leads it to a place, if it is a slip of the pen."""
+        away = [((place - self.loop.point[corner]) / axis.direction).real for axis in self._axes]
+        words = [(axis, int(axis.word[corner]), shift) for axis, shift in zip(self._axes, away, strict=True)]
+        words = [(axis, word, shift) for axis, word, shift in words if abs(shift) > self.tolerance]
+        if len(words) != 1 or words[0][1] < 0 or words[0][0].is_step[corner]:
+            return None
+        trial = self._elsewhere(corner, place, words)
+        written, needed = (parts_of(text)[1] for text in (self.trace.run.written(words[0][1]), trial.slip.text))
+        slip = next((slip for slip in slips_of(written) if float(slip.text) == float(needed)), None)
+        if corner and float(written) == words[0][0].value[corner - 1]:
+            slip = Slip("", "it is that of the block before it", False)
+        return None if slip is None else trial._replace(slip=slip._replace(text=trial.slip.text))
 
     def _elsewhere(self, corner: int, place: complex, words: list[tuple[AxisWords, int, float]]) -> _Trial:
         """The block with other words, and what follows it with them."""
