@@ -131,7 +131,8 @@ def test_the_clearance_is_named() -> None:
 def test_a_ramp_and_its_radius_are_told_apart() -> None:
     program = polar("G1 G42 X72.0002 F200", "C10.", "G40 C14.", head=HEAD.replace("X50.", "X80."))
     assert message(program, "start-up-shorter-than-radius", "fanuc", "1:radius=4") == (
-        "start-up moves 7.9998 mm in X on the diameter; with R 4 mm it needs 8 mm in X on the diameter"
+        "start-up moves 7.9998 mm in X on the diameter; with R 4 mm it needs 8 mm in X on the diameter; "
+        "it begins at X80 C0 of line 4"
     )
     program = program.replace("X72.0002", "X70.")
     said = message(program, "cancel-shorter-than-radius", "fanuc", "1:radius=4.0001")

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 @rule(
     ERROR,
-    "start-up {fault}{ramp_at_rest}",
+    "start-up {fault}{begins}{ramp_at_rest}",
     values=("code", "length", "radius", "length_needed"),
     worse=("-length", "length_needed"),
     gouges=True,
@@ -85,7 +85,7 @@ def start_up_shorter_than_radius(path: ProgrammedPath, compensation: CutterCompe
 
 
 def details(hit: Hit) -> Details:
-    from polarcheck.rules.wording.ramps import ramp_at_rest, ramp_length, short_ramp
+    from polarcheck.rules.wording.ramps import ramp_at_rest, ramp_length, short_ramp, start_of_ramp
 
     length = ramp_length(hit)
     return {
@@ -93,6 +93,7 @@ def details(hit: Hit) -> Details:
         "length": length,
         "length_needed": hit.radius,
         "fault": short_ramp(hit),
+        "begins": start_of_ramp(hit),
         "ramp_at_rest": ramp_at_rest(hit),
     }
 

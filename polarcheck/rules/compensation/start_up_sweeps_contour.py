@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 @rule(
     ERROR,
-    "the ramp goes {depth:length} deep into {swept}{ramp_at_rest}{increments}",
+    "the ramp goes {depth:length} deep into {swept}{begins}{ramp_at_rest}{increments}",
     values=("depth", "radius", "plane_x", "plane_c", "other_line"),
     worse=("depth",),
     gouges=True,
@@ -72,7 +72,7 @@ def start_up_sweeps_contour(slots: Slots, feeds: Feeds, compensation: CutterComp
 
 
 def details(hit: Hit, overcuts: Overcuts, slots: Slots) -> Details:
-    from polarcheck.rules.wording.ramps import increments_in_force, ramp_at_rest
+    from polarcheck.rules.wording.ramps import increments_in_force, ramp_at_rest, start_of_ramp
 
     own = overcuts.sweep_depth[hit.row] >= slots.sweep_depth[hit.row]
     into, place = (overcuts if own else slots).sweeps.deepest(hit.row)
@@ -81,6 +81,7 @@ def details(hit: Hit, overcuts: Overcuts, slots: Slots) -> Details:
         "plane_c": place.imag,
         "other_line": hit.line(into),
         "swept": f"the contour of line {hit.line(into)} at {hit.point(place)}",
+        "begins": start_of_ramp(hit),
         "ramp_at_rest": ramp_at_rest(hit),
         "increments": increments_in_force(hit),
     }

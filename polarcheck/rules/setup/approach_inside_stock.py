@@ -104,10 +104,11 @@ def details(hit: Hit, offsets: ToolOffsets, approaches: Approaches) -> Details:
 def _where(hit: Hit) -> tuple[str, str]:
     """What stands at the diameter, and since when."""
     from polarcheck.columns.filling import last_row
+    from polarcheck.rules.wording.ramps import line_before
 
     trace, row = hit.trace, hit.row
     if not trace.mode.enters[row]:
-        return f"the cutter goes down to Z{hit.number(trace.path.z[row])} on a diameter of", ""
+        return f"the cutter goes down to Z{hit.number(trace.path.z[row])} on a diameter of", line_before(hit, ", since")
     since = int(last_row(trace.blocks.has("X", "U"), trace.blocks.starts)[row])
     at = f" at {hit.switch}"
     return "X stands at", f"{at}, since line {hit.line(since)}" if since >= 0 else at

@@ -91,6 +91,19 @@ def ramp_at_rest(hit: Hit) -> str:
     return f"; {hit.side} of line {hit.line(at)} moves nowhere, so that this block is the ramp"
 
 
+def line_before(hit: Hit, said: str = " of") -> str:
+    """` of line 12`: the block that has brought the cutter to where a move begins; empty for the block above it."""
+    path, rows = hit.trace.path, np.arange(hit.row)
+    moves = np.flatnonzero((path.travels | path.moves_x | path.moves_c)[rows])
+    return f"{said} line {hit.line(int(moves[-1]))}" if len(moves) and moves[-1] < hit.row - 1 else ""
+
+
+def start_of_ramp(hit: Hit) -> str:
+    """`; it begins at X8.602 C0 of line 12`, of a start-up before which another block than the one above moves."""
+    line = line_before(hit) if hit.trace.compensation.starts_up[hit.row] else ""
+    return line and f"; it begins at {hit.point(complex(hit.trace.path.start[hit.row]))}{line}"
+
+
 def increments_in_force(hit: Hit) -> str:
     """
     `; G91 of line 11 is still in force: write G90 if X36. is a position`, where a block above wrote the code and the
