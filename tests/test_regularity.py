@@ -151,3 +151,15 @@ def test_a_number_that_one_slip_writes_exactly_is_none_of_another_that_is_near(w
     )
     (slip,) = report_of(program, "fanuc", "1:radius=3", only=["nearly-regular-contour"]).findings
     assert f"{how}: with X-25.4 it would be a regular hexagon" in slip.message
+
+
+def test_a_block_of_increments_that_stands_there_twice_is_told() -> None:
+    """A heptagon, which begins and ends in the middle of a side."""
+    blocks = (
+        "H8.678/U-27.138 H10.821/U-33.841 H-3.862/U-15.06 H-15.637/U-15.06 H-15.637/U15.06 H-15.637/U33.841 H-3.862/"
+        "U27.138 H10.821/H8.678"
+    ).replace("/", "\n")
+    program = f"O1\nT0101\nG98 G0 X80. Z2. C0\nG12.1\nG1 Z-4. F300\nG42 X36.039 F180\n{blocks}\nG40 X80.\nG13.1\nM30\n"
+    (slip,) = report_of(program, "fanuc", "1:radius=2", only=["nearly-regular-contour"]).findings
+    assert slip.line == 11
+    assert "it stands there twice: without it it would be closed" in slip.message
