@@ -144,6 +144,8 @@ class Engine:
         for name, table in self.tables.computed():
             columns: dict[str, Any] = getattr(table, "__dict__", {})
             first = self._columns_seen.get(name, 0)
+            if first == len(columns):
+                continue
             first = first if first <= len(columns) else 0  # the table has forgotten its columns
             self._columns_seen[name] = len(columns)
             for key in list(islice(columns, first, None)):

@@ -87,6 +87,8 @@ def is_uniform(values: NDArray[Any]) -> bool:
     """Return True if all values are equal, or all are NaN."""
     if values.dtype == np.bool_:  # `all` and `any` stop at the first value that differs
         return bool(values.all() if values[0] else not values.any())
+    if is_repeated(values):
+        return True
     first, last = values[0], values[-1]
     if first == first and first != values[len(values) // 2]:  # spares most columns the comparison of each value
         return False
