@@ -73,6 +73,7 @@ intersection = _element_wise(shapely.intersection)
 symmetric_difference = _element_wise(shapely.symmetric_difference)
 buffer = _element_wise(shapely.buffer)
 make_valid = _element_wise(shapely.make_valid)
+build_area = _element_wise(shapely.build_area)
 maximum_inscribed_circle = _element_wise(shapely.maximum_inscribed_circle)
 with_itself = _element_wise(_with_itself)
 

@@ -23,8 +23,6 @@ from polarcheck.geometry.polygons.noding import Edges, merged, noded
 from polarcheck.geometry.tolerances import ROUNDING
 
 Geometries = NDArray[Any]
-#: Rings of a group up to which they are put on or taken away one by one, and how many are compared at a time.
-_FEW, _RINGS = 32, 256
 #: Points are rounded to this grid [mm] where areas are cut out of each other; without, GEOS may find no answer.
 GRID = ROUNDING
 
@@ -264,52 +262,14 @@ def _polygons(start: Points, end: Points, ring: Rows, group: Rows, groups: int) 
     solid[broken] = areas.make_valid(solid[broken])
     of, hole = group[first], area < 0
     result[of[~hole][::-1]] = solid[~hole][::-1]
-    # What lies in a hole is smaller than it: from the largest ring on each is put on what was there, or taken away.
+    # A ring within another one bounds a hole, and a ring in that what stands in the hole.
     order = np.argsort(of, kind="stable")
     begins = np.append(np.flatnonzero(np.diff(of[order], prepend=-1)), len(of))
     for low, high in pairwise(begins.tolist()):
-        rings = order[low:high]
-        if high - low == 1 and not hole[rings[0]]:
-            continue
-        rings = rings[np.argsort(-np.abs(area[rings]), kind="stable")]
-        whole = _nested(solid[rings], hole[rings]) if len(rings) > _FEW else None
-        if whole is None:
-            whole = shapely.Polygon()
-            for index in rings:
-                whole = (areas.difference if hole[index] else areas.union)(whole, solid[index])
-        result[of[rings[0]]] = whole
+        if high - low > 1:
+            whole = areas.build_area(shapely.geometrycollections(solid[order[low:high]]))
+            result[of[order[low]]] = whole if shapely.is_valid(whole) else areas.make_valid(whole)
     return result
-
-
-def _nested(solid: Geometries, hole: Mask) -> Any:
-    """
-    What rings enclose, the largest first, by which of them lies in which: put on and taken away one by one, it would
-    cost the square of their number. None where holes do not lie in what is solid, and that in holes.
-    """
-    point = shapely.STRtree(shapely.point_on_surface(solid))
-    around = np.full(len(solid), -1)
-    for begin in range(0, len(solid), _RINGS):
-        keep_time()
-        outer, inner = point.query(solid[begin : begin + _RINGS], predicate="contains")
-        outer = outer + begin
-        # The least ring of those round one is the last.
-        np.maximum.at(around, inner[outer < inner], outer[outer < inner])
-    if (hole & (around < 0)).any() or (hole[around] == hole)[around >= 0].any():
-        return None
-    holes: dict[int, list[Any]] = {}
-    for index in np.flatnonzero(hole).tolist():
-        holes.setdefault(int(around[index]), []).extend(shapely.get_parts(solid[index]))
-    if any(part.interiors for parts in holes.values() for part in parts):
-        return None
-    pieces = []
-    for index in np.flatnonzero(~hole).tolist():
-        shells = shapely.get_parts(solid[index])
-        voids = holes.get(index, [])
-        if voids and (len(shells) > 1 or shells[0].interiors):
-            return None
-        pieces += [shapely.Polygon(shells[0].exterior, [part.exterior for part in voids])] if voids else list(shells)
-    whole = shapely.MultiPolygon(pieces)
-    return whole if shapely.is_valid(whole) else None
 
 
 def coordinates(points: Points) -> Floats:
