@@ -81,3 +81,39 @@ def test_nothing_is_told_beside_one_mistake(block: str, wrong: str, rule: str) -
     written = [wrong if line == block else line for line in ROUNDED]
     report = report_of(program(written), "fanuc-30i", "1:radius=2")
     assert {finding.rule for finding in report.findings} == {rule}, said(report)
+
+
+#: A contour of distances milled twice, and one with centers.
+_MILLED = "Z-7./G41 X18. F100./G91 G102 X-5.078 Y-6.343 L6.5/G101 X-15.234 Y-3.415/G102 X-12.188 Y9.758 L10."
+_MILLED += "/X12.188 Y9.758 L10./G101 X15.234 Y-3.415/G102 X5.078 Y-6.343 L6.5/G40 G90 G101 X27. F1500."
+TWICE = (
+    f"G40/T030303/G94/M110/G97 SB=3000 M13/G0 C0/G0 X58. Z2./G137 C0/G17/G101 X27. F1500./{_MILLED}/{_MILLED}/Z2./G136"
+)
+_CROSS = "G42 G1 X19.5 Y0 F80./G1 X19.5 Y7.5/G1 X14.5 Y7.5/G2 X7.5 Y14.5 I0 J7./G1 X7.5 Y19.5/G1 X-7.5 Y19.5"
+_CROSS += "/G1 X-7.5 Y14.5/G2 X-14.5 Y7.5 I-7. J0/G1 X-19.5 Y7.5/G1 X-19.5 Y-7.5/G1 X-14.5 Y-7.5"
+_CROSS += "/G2 X-7.5 Y-14.5 I0 J-7./G1 X-7.5 Y-19.5/G1 X7.5 Y-19.5/G1 X7.5 Y-14.5/G2 X14.5 Y-7.5 I7. J0/G1 X19.5 Y-7.5"
+CROSS = "G71 G90 G40/T2 D1/G94/SETMS(2) S2=3000 M2=3/G0 C0/G0 X62. Z2./G0 Z-5.5/DIAMOF/TRANSMIT/G1 X28.5 Y0 F800."
+CROSS += f"/{_CROSS}/G1 X19.5 Y0/G40 G1 X28.5 Y0 F800./TRAFOOF/DIAMON/G0 Z2."
+
+
+@looped(
+    ("machine", "tool", "text", "slips", "lines"),
+    [
+        ("okuma-osp", "3:radius=5", TWICE, [("/G17/G101 X27.", "/G17/G101 X2.7"), ("X5.078 Y", "X5078 Y")], {11, 27}),
+        (
+            "siemens-transmit",
+            "2:radius=5",
+            CROSS,
+            [("X19.5 Y0 F", "X19.55 Y0 F"), ("X-14.5 Y7.5 I", "X-7.5 Y7.5 I")],
+            {11, 18},
+        ),
+    ],
+)
+def test_what_an_explanation_leaves_under_another_finding_is_told(
+    machine: str, tool: str, text: str, slips: list[tuple[str, str]], lines: set[int]
+) -> None:
+    for right, wrong in slips:
+        before, _, behind = text.rpartition(right)
+        text = f"{before}{wrong}{behind}"
+    report = report_of(text.replace("/", "\n") + "\nM30\n", machine, tool, job={"stock": {"diameter": 40}})
+    assert {finding.line for finding in report.findings} == lines

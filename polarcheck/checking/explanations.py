@@ -143,7 +143,7 @@ def _explained(
     partly: list[Replace] = []
     whole: list[Replace] = []
     if symptoms:
-        search = _Search(engine, number, {finding.rule for finding in findings if is_told(finding)}, count)
+        search = _Search(engine, number, findings, count)
         try:
             for explanation in search.explanations(symptoms):
                 findings = _under(engine, findings, explanation)
@@ -171,8 +171,10 @@ def _lines(finding: Finding) -> set[int]:
 
 
 class _Search:
-    def __init__(self, engine: Engine, number: int, told: set[str], count: TrialCount) -> None:
+    def __init__(self, engine: Engine, number: int, findings: list[Finding], count: TrialCount) -> None:
         self.engine, self.trace, self.number, self.count = engine, engine.trace, number, count
+        told = {finding.rule for finding in findings if is_told(finding)}
+        self.roots = {(finding.rule, finding.line) for finding in findings}
         rules = (rule for rule in engine.rules.values() if not rule.of_text and rule.over == "rows")
         # What a rule only notes is a warning or an error where others follow from it.
         self.rules = [rule for rule in rules if rule.name in told or _warns(engine, rule)]
@@ -212,6 +214,10 @@ class _Search:
     def _line_of_section(self, loop: WrittenLoop) -> int:
         mode = self.trace.mode
         return int(self.trace.blocks.line[mode.sections.enter[mode.section[loop.row[1]]]])
+
+    def _lines_of_section(self, loop: WrittenLoop) -> set[int]:
+        section = self.trace.mode.section
+        return set(self.trace.blocks.line[section == section[loop.row[1]]].tolist())
 
     def _explained(self, loop: WrittenLoop, own: set[int], others: set[int]) -> list[_Explained]:
         """
@@ -265,7 +271,10 @@ class _Search:
         best = [found for found in best if best[0].likely.gain - found.likely.gain <= AS_LIKELY]
         if not best:
             return []
-        best[0] = best[0]._replace(is_whole=bool(whole))
+        # What is left in the section and stands under another finding is searched without the mistake.
+        hidden = {line for rule, line in best[0].left if (rule, line) not in self.roots}
+        is_whole = bool(whole) and hidden.isdisjoint(self._lines_of_section(loop))
+        best[0] = best[0]._replace(is_whole=is_whole)
         if len(best) > _NAMED:
             is_one = bool(whole) and all(found.row == best[0].row for found in best)
             return [best[0]._replace(is_named=False, edits=[], left=self.symptoms)] if is_one else []
@@ -312,7 +321,8 @@ class _Search:
             left = self._left_by([*chain(*(other.edits for other in explained)), *replaced])
             left = before if left is None else left
             row = int(loop.row[edit.corner])
-            explained.append(_Explained(likely, row, replaced, before - left, left, is_whole=True, is_of_two=True))
+            is_whole = len(sure) == len(pairs[0])
+            explained.append(_Explained(likely, row, replaced, before - left, left, is_whole=is_whole, is_of_two=True))
             before = left
         return explained
 
