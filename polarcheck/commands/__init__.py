@@ -9,7 +9,6 @@ from __future__ import annotations
 import gc
 import importlib
 import os
-import re
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
@@ -31,6 +30,7 @@ from polarcheck.files.cache import repeats
 from polarcheck.foundation import ending, record
 from polarcheck.foundation.errors import PolarcheckError, RuleError
 from polarcheck.foundation.memory import keep_room_for_numpy
+from polarcheck.foundation.patterns import lazy_pattern
 from polarcheck.foundation.version import __version__
 
 NAMES = (
@@ -58,7 +58,7 @@ NAMES = (
 
 
 #: click lists the choices of an argument on lines of their own; they are joined into one line.
-_LIST = re.compile(r"([:,])\n\t")
+_LIST = lazy_pattern(r"([:,])\n\t")
 
 
 class Modules(Mapping[str, click.Command]):

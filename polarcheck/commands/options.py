@@ -13,6 +13,7 @@ import click
 
 from polarcheck.commands.exit_codes import COULD_NOT_RUN
 from polarcheck.files.settings.declarations import SETTINGS
+from polarcheck.foundation.patterns import lazy_pattern
 
 Decorator = Callable[[Any], Any]
 
@@ -21,7 +22,7 @@ DEBUG = "polarcheck.debug"
 
 
 #: 512MB, 2G, 1.5 GiB, 100k, 4096: k is 1000 bytes, Ki 1024.
-_SIZE = re.compile(r"\s*+(\d{1,15}|\d{0,15}\.\d{1,15})\s*+(?:([KMGT])(I?))?B?\s*+", re.IGNORECASE | re.ASCII)
+_SIZE = lazy_pattern(r"\s*+(\d{1,15}|\d{0,15}\.\d{1,15})\s*+(?:([KMGT])(I?))?B?\s*+", re.IGNORECASE | re.ASCII)
 _PREFIXES = " KMGT"
 
 

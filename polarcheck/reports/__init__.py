@@ -8,8 +8,8 @@ The module has a function of the name of the format, or `<format>_parts`, which 
 from __future__ import annotations
 
 import importlib
+import os
 from collections.abc import Callable, Iterator, Mapping
-from pathlib import Path
 from types import MappingProxyType, ModuleType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -92,7 +92,8 @@ class Parts(NamedTuple):
 
 def formats() -> list[str]:
     """Return the names of the formats: the modules of this package and those of wings, those for people first."""
-    names = {path.stem for path in Path(__file__).parent.glob("*.py")} - {"__init__"} | OF_WINGS.keys()
+    modules = {name.removesuffix(".py") for name in os.listdir(__path__[0]) if name.endswith(".py")}  # noqa: PTH208
+    names = modules - {"__init__"} | OF_WINGS.keys()
     return [*FOR_PEOPLE, *sorted(names.difference(FOR_PEOPLE))]
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
 from typing import Any
 
@@ -247,7 +246,7 @@ def block_in_line(run: Run, row: int, length: int) -> str:
 
 def squeezed(text: str) -> str:
     """Without blanks; `:` is O."""
-    return re.sub(r"\s+", "", text).replace(":", "O")
+    return "".join(text.split()).replace(":", "O")
 
 
 def _is_named(trace: Trace, index: int, names: tuple[str, ...]) -> bool:

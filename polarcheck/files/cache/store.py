@@ -10,23 +10,23 @@ from __future__ import annotations
 
 import contextlib
 import os
-import re
 import stat
 import sys
 from pathlib import Path
 
 from polarcheck.foundation import bounded, record
 from polarcheck.foundation.digest import blake2b
+from polarcheck.foundation.patterns import lazy_pattern
 
 NAME = ".polarcheck_cache"
 #: The largest file, of 256; entries that have not been used for the longest time go first [bytes].
 LARGEST = 1_000_000
 _SEAL, _KEY = 32, 32
 _KEY_NAME = "cache-key"
-_IS_VERSION = re.compile(r"[0-9a-f]{16}")
+_IS_VERSION = lazy_pattern(r"[0-9a-f]{16}")
 #: The largest run that can be repeated, of 256 [bytes].
 LARGEST_RUN = 200_000
-_IS_SHARD = re.compile(r"(run)?[0-9a-f]{2}\.cache|\.[0-9a-f]{16}\.new")
+_IS_SHARD = lazy_pattern(r"(run)?[0-9a-f]{2}\.cache|\.[0-9a-f]{16}\.new")
 _TAG = (
     "Signature: 8a477f597d28d172789f06886806bc55\n"
     "# This folder is a cache of polarcheck, and can be deleted. For information about cache directory tags see:\n"

@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 
 import msgspec
 
+from polarcheck.foundation.patterns import lazy_pattern
 from polarcheck.program.machines.value_checks import (
     Address,
     AddressOrNone,
@@ -26,7 +27,7 @@ CODE_LISTS = (
     "modal_macro_cancel",
     "program_returns",
 )
-_FLOW_CODE = re.compile(r"[GM](?:0|[1-9]\d{0,2})(?:\.[1-9])?", re.ASCII)
+_FLOW_CODE = lazy_pattern(r"[GM](?:0|[1-9]\d{0,2})(?:\.[1-9])?", re.ASCII)
 
 
 class Macro(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

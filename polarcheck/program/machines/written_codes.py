@@ -9,6 +9,7 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
+from polarcheck.foundation.patterns import lazy_pattern
 from polarcheck.program.machines.code_keys import EVERY
 from polarcheck.program.machines.code_lists import is_code, numbers
 
@@ -23,14 +24,14 @@ _ADDRESSES = frozenset(
         *("polar.center_words", "arcs.radius_word", "control.axes"),
     )
 )
-_AS_IT_IS = re.compile(r"[GM](?:0|[1-9]\d*)(?:\.[1-9])?", re.ASCII)
-_CODE = re.compile(
+_AS_IT_IS = lazy_pattern(r"[GM](?:0|[1-9]\d*)(?:\.[1-9])?", re.ASCII)
+_CODE = lazy_pattern(
     r"([GMgm]) *0*(\d{1,4})(?:\.(\d)0*)?(?: *- *([GMgm]) *0*(\d{1,4})| *([A-Za-z]) *([-+]?\d+(?:\.\d*)?))?",
     re.ASCII,
 )
-_ADDRESS = re.compile("[a-z]")
+_ADDRESS = lazy_pattern("[a-z]")
 #: What any list can hold: codes, ranges, codes with a word, addresses, names of lists.
-_FORM = re.compile(r"[GM]\d{1,3}(\.\d)?(-[GM]\d{1,3}| [A-Z][-.\d]+)?|[A-Z]|[a-z_]{4,}", re.ASCII)
+_FORM = lazy_pattern(r"[GM]\d{1,3}(\.\d)?(-[GM]\d{1,3}| [A-Z][-.\d]+)?|[A-Z]|[a-z_]{4,}", re.ASCII)
 
 
 class ListError(ValueError):

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import re
-
 import numpy as np
 
 from polarcheck.columns.modes.tools import CalledTools
 from polarcheck.columns.trace import Trace
+from polarcheck.foundation.patterns import lazy_pattern
 from polarcheck.program.machines.machine import Machine
 from polarcheck.rules.wording.written import short
 
-_BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
-_BARE_ARGUMENT = re.compile(r"[A-Za-z0-9_./+-]+")
+_BARE_KEY = lazy_pattern(r"[A-Za-z0-9_-]+")
+_BARE_ARGUMENT = lazy_pattern(r"[A-Za-z0-9_./+-]+")
 
 
 def called_tool(tools: CalledTools, row: int) -> str:
