@@ -22,6 +22,7 @@ from polarcheck.checking.engine import LISTED, Engine
 from polarcheck.columns.words.allow_comments import Allows
 from polarcheck.foundation.finding import ERROR, NOTE, WARNING, Finding
 from polarcheck.foundation.time_limit import keep_time, time_limit
+from polarcheck.rules import rule as rule_module
 from polarcheck.rules import tables
 from polarcheck.rules.examples import Example, examples
 from polarcheck.rules.hit import Hit
@@ -172,6 +173,27 @@ def compares(function: ast.FunctionDef) -> bool:
         for statement in function.body
         for node in ast.walk(statement)
     )
+
+
+def test_rules_are_compiled_once_and_anew_when_one_has_changed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(rule_module, "__file__", str(tmp_path / "rule.py"))
+    monkeypatch.setattr("sys.dont_write_bytecode", False)
+    paths = [str(tmp_path / name) for name in ("first.py", "second.py")]
+
+    def loaded() -> list[str]:
+        return [code.co_consts[0] for code in rule_module._codes(paths)]
+
+    for path in map(Path, paths):
+        path.write_text(f"name = '{path.stem}'\n")
+    assert loaded() == ["first", "second"]
+    with monkeypatch.context() as patch:
+        patch.setattr(rule_module, "_compiled", lambda path: pytest.fail("compiled again"))
+        assert loaded() == ["first", "second"]
+    Path(paths[1]).write_text("name = 'another'\n")
+    assert loaded() == ["first", "another"]
+    (kept,) = tmp_path.rglob("*.kept")
+    kept.write_bytes(kept.read_bytes()[:-3])
+    assert loaded() == ["first", "another"]
 
 
 @looped("path", [*map(Path, rule_files())], ids=lambda path: path.stem)

@@ -632,7 +632,7 @@ def test_a_profile_is_parsed_once_and_anew_when_it_has_changed(tmp_path: Path, m
     assert [*tmp_path.iterdir()] == [path]
     monkeypatch.setattr("sys.dont_write_bytecode", False)
     assert read(path) == {"limits": {"c_feed": 36}}
-    (kept,) = tmp_path.rglob("*.msgpack")
+    (kept,) = tmp_path.rglob("*.kept")
     assert [*kept.parent.iterdir()] == [kept]
     with monkeypatch.context() as patch:
         patch.setattr("tomllib.loads", lambda text: pytest.fail("parsed again"))

@@ -4,12 +4,20 @@ The decoders and conversions of msgspec, of which nothing else in the package ma
 msgspec learns the fields of a class when it first decodes into it, and stores them with the class bit by bit. A second
 thread that decodes into the class meanwhile finds half of them, and the process dies (findings/README.md). Here each
 type is learnt once, behind a lock, before anything is decoded into it. Encoders need no types: they are used directly.
+
+What takes longer to make than to decode is kept where Python keeps compiled modules.
 """
 
 from __future__ import annotations
 
+import contextlib
 import functools
+import os
+import sys
 import threading
+from collections.abc import Callable
+from importlib.util import cache_from_source
+from pathlib import Path
 from typing import Any, TypeVar
 
 import msgspec
@@ -53,3 +61,26 @@ def _json_decoder(kind: Any) -> Any:
 @functools.cache
 def _msgpack_decoder(kind: Any) -> Any:
     return msgspec.msgpack.Decoder(kind)
+
+
+def kept(
+    source: Path,
+    digest: bytes,
+    make: Callable[[], Kind],
+    encode: Callable[[Kind], bytes],
+    decode: Callable[[bytes], Kind],
+) -> Kind:
+    """Return what is kept beside a source file under a digest of all sources, or else make it and keep it."""
+    file = Path(cache_from_source(source)).with_suffix(".kept")
+    with contextlib.suppress(OSError, ValueError, EOFError, TypeError):  # none, or damaged
+        data = file.read_bytes()
+        if data.startswith(digest):
+            return decode(data[len(digest) :])
+    made = make()
+    if not sys.dont_write_bytecode:
+        with contextlib.suppress(OSError):
+            file.parent.mkdir(exist_ok=True)
+            new = file.with_suffix(f".{os.getpid()}")
+            new.write_bytes(digest + encode(made))
+            new.replace(file)
+    return made
