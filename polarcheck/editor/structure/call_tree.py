@@ -23,13 +23,7 @@ def prepare(document: Document, position: types.Position, workspace: Workspace) 
     use = uses.at(document.text.character_of(position))
     if use is not None and use.mention.kind is Kind.PROGRAM and use.mention.role is Role.REFERS:
         return [_item(owner) for owner in uses.resolved(use.owner, called_name(use.mention))][:_MOST]
-    owners = [
-        owner
-        for owner in uses.owners(document)
-        for listing, block in document.at(position)
-        if owner.mentions.listing is listing and owner.program.first <= block < owner.program.end
-    ]
-    return [_item(owner) for owner in owners[:1]]
+    return [_item(owner) for owner in uses.owners_at(position)[:1]]
 
 
 def incoming(document: Document, item: Any, workspace: Workspace) -> list[types.CallHierarchyIncomingCall]:

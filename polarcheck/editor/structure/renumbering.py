@@ -85,15 +85,7 @@ def _alone(document: Document) -> Workspace:
 
 def _owner_at(uses: Uses, position: types.Position) -> Owner | None:
     """Return the program at a position; of several channels the first that has N numbers there."""
-    document = uses.document
-    blocks = [block for _, block in document.at(position)]
-    owners = [
-        owner
-        for owner in uses.owners(document)
-        for listing, block in zip(document.listings, blocks, strict=True)
-        if owner.mentions.listing is listing and owner.program.first <= block < owner.program.end
-    ]
-    return next((owner for owner in owners if _numbers(owner)), None)
+    return next((owner for owner in uses.owners_at(position) if _numbers(owner)), None)
 
 
 def _heads(owner: Owner) -> list[Mention]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Iterator, Sequence
 
 import numpy as np
@@ -73,7 +72,7 @@ def _symbol(
 
 def _tools(document: Document, listing: Listing, program: Program) -> Iterator[types.DocumentSymbol]:
     for stretch in block_ranges.tools(listing, program):
-        name = _without_comments(listing, stretch.first)
+        name = " ".join(listing.text.without_comments(stretch.first).split())
         comment = _comment(listing, stretch.first) or _comment_above(listing, stretch.first, program)
         yield _symbol(document, listing, *stretch, name, types.SymbolKind.Class, comment)
 
@@ -86,7 +85,7 @@ def _sections(
     for stretch in block_ranges.polar_sections(listing, program):
         line = int(listing.text.blocks.line[stretch.first])
         detail = summary(*by_line[line]) if line in by_line else ""
-        name = _without_comments(listing, stretch.first)
+        name = " ".join(listing.text.without_comments(stretch.first).split())
         yield _symbol(document, listing, *stretch, name, types.SymbolKind.Namespace, detail)
 
 
@@ -153,17 +152,3 @@ def _comment_above(listing: Listing, block: int, program: Program) -> str:
     text = listing.text
     has_words = bool(text.blocks.is_macro[block - 1]) or bool(np.any(text.words.block == block - 1))
     return "" if has_words else _comment(listing, block - 1)
-
-
-def _without_comments(listing: Listing, block: int) -> str:
-    """Return a block as it is written, without its comments."""
-    text = listing.text
-    start, end = int(text.blocks.start[block]), int(text.blocks.end[block])
-    low, high = np.searchsorted(text.comments.block, (block, block + 1)).tolist()
-    edges = [
-        start,
-        *itertools.chain(*zip(text.comments.start[low:high], text.comments.end[low:high], strict=True)),
-        end,
-    ]
-    parts = (text.source.excerpt(int(edges[index]), int(edges[index + 1])) for index in range(0, len(edges), 2))
-    return " ".join(" ".join(parts).split())

@@ -6,6 +6,8 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
+from lsprotocol import types
+
 from polarcheck.editor.structure.document import Document
 from polarcheck.editor.structure.mention import Into, Kind, Mention, Role
 from polarcheck.editor.structure.mentions import Mentions, mentions_of
@@ -87,6 +89,15 @@ class Uses:
             "calls",
             lambda: [Use(owner, mention) for owner in self.owners(document) for mention in owner.calls],
         )
+
+    def owners_at(self, position: types.Position) -> list[Owner]:
+        """Return the programs at a position of the document, that of the first channel first."""
+        return [
+            owner
+            for owner in self.owners(self.document)
+            for listing, block in self.document.at(position)
+            if owner.mentions.listing is listing and owner.program.first <= block < owner.program.end
+        ]
 
     def at(self, character: int) -> Use | None:
         """Return the mention at a character of the document; of several channels the first that has one."""

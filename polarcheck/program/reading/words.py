@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cached_property
 from typing import Any
 
@@ -9,7 +10,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck.foundation.arrays import Floats, Mask, Table, first_in_run, is_among, mask_at
+from polarcheck.foundation.arrays import Floats, Mask, Table, first_in_run, is_among, mask_at, side_by_side, stretch
 from polarcheck.foundation.patterns import lazy_pattern
 from polarcheck.program.reading.characters import KINDS, Character
 from polarcheck.program.reading.language_blocks import extract_statements
@@ -135,6 +136,14 @@ class Text(msgspec.Struct, frozen=True):
     def written(self, table: Words | Blocks | Spans, index: int) -> str:
         """Return the characters of an element of one of its tables."""
         return self.source.excerpt(int(table.start[index]), int(table.end[index]))
+
+    def without_comments(self, block: int, further: Sequence[tuple[int, int]] = ()) -> str:
+        """Return a block with blanks in the places of its comments, and of further spans of the file."""
+        offset, rows = int(self.blocks.start[block]), slice(*stretch(self.comments.block, block, block + 1))
+        characters = list(self.written(self.blocks, block))
+        for start, end in (*side_by_side(self.comments.start[rows], self.comments.end[rows]), *further):
+            characters[start - offset : end - offset] = " " * (end - start)
+        return "".join(characters)
 
 
 def read_words(

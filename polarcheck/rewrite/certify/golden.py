@@ -29,7 +29,6 @@ from polarcheck.rewrite.compare.comparison_report import Difference
 from polarcheck.rewrite.compare.order_differences import PLACE, listed, order_differences
 from polarcheck.rewrite.compare.orders import Step, feed_unit, rows_behind, steps
 from polarcheck.rewrite.compare.terms import ANGLE, Terms
-from polarcheck.rewrite.writing.new_blocks import without_comments
 from polarcheck.rewrite.writing.original import BLOCKS_NOT_KNOWN
 from polarcheck.rules.quantity import rounded
 from polarcheck.rules.wording.written import executed_word
@@ -126,7 +125,7 @@ def _not_known(trace: Trace) -> Iterator[Step]:
         yield Step(row, int(lines[row]), ("not known", word), (), f"{word} of unknown value")
     blocks = [remark.block for remark in run.remarks if remark.kind in BLOCKS_NOT_KNOWN] if len(trace) else []
     for block, row in zip(blocks, rows_behind(trace, blocks) if blocks else (), strict=True):
-        text = "".join(without_comments(trace.text, block).split()).upper()
+        text = "".join(trace.text.without_comments(block).split()).upper()
         yield Step(row, int(trace.text.blocks.line[block]), ("not known", text), (), f"{text}: what runs is not known")
 
 

@@ -17,7 +17,6 @@ from polarcheck.program.execution.run import NO_VARIABLE, Assigned
 from polarcheck.program.machines.axis_table import FIRST_NAMED, OF_SPINDLE
 from polarcheck.program.machines.code_tables import code_set
 from polarcheck.program.reading.excerpt import shortened
-from polarcheck.rewrite.writing.new_blocks import without_comments
 from polarcheck.rules.wording.written import executed_word
 
 _OF_ARCS = ("I", "J", "K", "R")
@@ -119,7 +118,7 @@ def statements(trace: Trace) -> Iterator[Step]:
     if not blocks or not len(trace):
         return
     for block, row in zip(blocks, rows_behind(trace, blocks), strict=True):
-        content = without_comments(text, block).upper()
+        content = text.without_comments(block).upper()
         of_speeds = [match[0] for match in _STATEMENT.finditer(content) if match[1] in names]
         for written in [_NUMBER.sub("", content)] if block in unread else of_speeds:
             statement = "".join(written.split())
@@ -260,7 +259,7 @@ class _Reader:
         name = f"{assigned.name}={'+' * assigned.is_step}"
         if assigned.value == assigned.value:
             return name, assigned.value, f"{name}{assigned.value:.10g}"
-        content = without_comments(self._trace.text, int(self._trace.run.block[row])).upper()
+        content = self._trace.text.without_comments(int(self._trace.run.block[row])).upper()
         written = "".join(_NUMBER.sub("", content).split())
         return written if assigned.variable == NO_VARIABLE else name, assigned.value, written
 

@@ -9,7 +9,6 @@ import numpy as np
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import stretch
 from polarcheck.program.execution.run import begins_program
-from polarcheck.rewrite.writing.new_blocks import without_comments
 from polarcheck.rules.editing import line_end
 
 _LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz"
@@ -64,7 +63,7 @@ class BlockTexts:
         """The words of a block as they are written, without N, block skip and comments."""
         if block not in self._contents:
             is_bare = block not in self.with_comment
-            written = self.text.written(self.text.blocks, block) if is_bare else without_comments(self.text, block)
+            written = self.text.written(self.text.blocks, block) if is_bare else self.text.without_comments(block)
             self._contents[block] = _behind_head(written)
         return self._contents[block]
 
@@ -76,7 +75,7 @@ class BlockTexts:
             (self._with_name(block, int(run.words.start[index])), int(run.words.end[index]))
             for index in range(low, high)
         ]
-        return _behind_head(without_comments(self.text, block, spans))
+        return _behind_head(self.text.without_comments(block, spans))
 
     def _with_name(self, block: int, start: int) -> int:
         """Where a word begins, with the letters of its address, of which CR=5 has the last alone."""

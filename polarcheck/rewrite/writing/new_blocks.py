@@ -128,26 +128,12 @@ def edits_of_ranges(
 def comments_of(text: Text, index: int) -> list[str]:
     """The comments of a block without their signs."""
     comments = []
-    for start, end in _comment_spans(text, index):
-        comment = text.source.excerpt(start, end)
+    for number in range(*stretch(text.comments.block, index, index + 1)):
+        comment = text.written(text.comments, number)
         is_closed = comment.startswith("(") and comment.endswith(")")
         is_mark = comment[:1] not in "(;%"  # of a channel
         comments.append(comment[1:-1] if is_closed else comment if is_mark else comment[1:].strip())
     return comments
-
-
-def without_comments(text: Text, index: int, further: Sequence[tuple[int, int]] = ()) -> str:
-    """A block with blanks in the places of its comments. further: other spans of the file that become blanks."""
-    offset = int(text.blocks.start[index])
-    content = text.source.excerpt(offset, int(text.blocks.end[index]))
-    for start, end in (*_comment_spans(text, index), *further):
-        content = content[: start - offset] + " " * (end - start) + content[end - offset :]
-    return content
-
-
-def _comment_spans(text: Text, index: int) -> list[tuple[int, int]]:
-    rows = slice(*stretch(text.comments.block, index, index + 1))
-    return list(zip(text.comments.start[rows].tolist(), text.comments.end[rows].tolist(), strict=True))
 
 
 def next_move_in_motion(trace: Trace, row: int) -> int | None:
@@ -283,7 +269,7 @@ def _edit(
     content = text.written(text.blocks, index)
     begin, finish = without_blanks(content, start)
     lead = begin - start
-    head = _HEAD.match(without_comments(text, index) if has_more else content, lead)
+    head = _HEAD.match(text.without_comments(index) if has_more else content, lead)
     labels = range(*stretch(text.labels.block, index, index + 1)) if has_more else range(0)
     head_end = max((int(text.labels.end[label]) - start for label in labels), default=0)
     head_end = max(head.end() if head else lead, head_end)
