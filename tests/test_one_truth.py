@@ -838,3 +838,14 @@ def test_a_straight_move_outside_of_sections_may_be_divided(control: str, tmp_pa
 def test_a_work_offset_of_no_section_leaves_nothing_open(control: str, words: str, verdict: str) -> None:
     text = program(control, ("/G0 X60", f"/{words}/G0 X60"))
     assert report_of(text, control, CUTTER).verdict == verdict
+
+
+@looped("target", ["haas-lathe", "okuma-osp", "mazak-integrex"])
+def test_what_is_a_note_on_one_lathe_and_fails_a_program_on_another_is_to_decide(target: str, tmp_path: Path) -> None:
+    (file,) = written(tmp_path, program("takisawa", (" M200", ""), ("M13", "M70")))
+    findings = report_of(file.read_text("utf-8"), "takisawa", CUTTER).findings
+    assert ("c-axis-not-engaged", "note") in [(finding.rule, finding.severity) for finding in findings]
+    result = run("convert", "--from", "takisawa", "--to", target, "--no-config", "--tool", CUTTER, file)
+    assert (result.exit_code, "to decide: c-axis-not-engaged" in result.stderr) == (1, True)
+    findings = report_of(result.stdout, target, CUTTER).findings
+    assert ("c-axis-not-engaged", "warning") in [(finding.rule, finding.severity) for finding in findings]

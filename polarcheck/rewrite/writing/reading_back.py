@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Collection, Iterator, Sequence
 from typing import Any
 
@@ -245,14 +244,16 @@ def _added_findings(
         findings_of([("", program.tables)], program.settings.severities, lowest, inline=program.settings.inline)
         for program in (original, new)
     )
-    counts_before = Counter(finding.rule for finding in before)
-    lines = {(finding.rule, finding.line) for finding in before}
-    of_rule: dict[str, list[Finding]] = {}
+    of_rule: dict[tuple[str, Severity], list[Finding]] = {}
     for finding in after:
-        of_rule.setdefault(finding.rule, []).append(finding)
-    for rule, findings in of_rule.items():
-        added = [finding for finding in findings if (rule, line_of(origin, finding.line)) not in lines]
-        added = findings if rule in _OF_CENTER else added[: max(len(findings) - counts_before[rule], 0)]
+        # A note of one lathe is none of what fails a program on another one.
+        least = min(SEVERITIES[finding.severity], Severity.WARNING)
+        of_rule.setdefault((finding.rule, least), []).append(finding)
+    for (rule, least), findings in of_rule.items():
+        same = [finding.line for finding in before if finding.rule == rule and SEVERITIES[finding.severity] >= least]
+        lines = set(same)
+        added = [finding for finding in findings if line_of(origin, finding.line) not in lines]
+        added = findings if rule in _OF_CENTER else added[: max(len(findings) - len(same), 0)]
         for finding in added:
             text = f"{finding.rule} in line {finding.line} of the result: {finding.message}"
             yield rules[rule], SEVERITIES[finding.severity], Refusal(line_of(origin, finding.line), text)
