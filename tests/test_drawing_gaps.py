@@ -123,6 +123,18 @@ def test_walls_that_end_in_the_air_are_no_ring(curves: list[Wall]) -> None:
     assert widest_gap([np.array(curve) for curve in curves]) is None
 
 
+def test_gaps_narrower_than_what_is_tried_of_the_part_are_left_out(tmp_path: Path) -> None:
+    sides = program(polygon(2))
+    arcs = sides.replace("\nX-40.", "\nG3 R20. X-40.").replace("\nX40.", "\nR20. X40.").replace("\nG40", "\nG1 G40")
+    for gap in (0.02, 0.06):
+        ring = walls(polygon(400), gap)
+        for text in (arcs, program(polygon(200))):
+            found = report(tmp_path, text, ring)
+            assert (found.findings, len(reasons(found))) == ([], 1)
+            (finding,) = report(tmp_path, text, walls(polygon(400, 19.96), gap)).findings
+            assert finding.values["largest"] == pytest.approx(0.04, abs=0.003)
+
+
 @pytest.mark.ci
 def test_two_flats_drawn_as_lines_are_judged_as_areas(tmp_path: Path) -> None:
     flat = "G12.1\nG1 G98 C-30. F500\nG42 X{size} C-25. F200\nZ-5.\nC25.\nG40 X60. C30.\nZ2.\nG13.1\n"

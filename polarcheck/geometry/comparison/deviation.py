@@ -117,11 +117,11 @@ def difference(
     the next.
     """
     rounds = rounds_of(drawn, part.way, tolerance)
-    places, outside = _compared(part, drawn, rounds, tolerance)
+    places, outside, has_gaps = _compared(part, drawn, rounds, tolerance)
     if np.isfinite(metal):
         between = _between_walls(part, drawn, metal)[part.way.of[part.way.at(places[0])[1]]]
         places = places[0], places[1] & ~between
-    first = _extremes(part.way, lambda points: _from_part(part, drawn, points), places)
+    first = _extremes(part.way, lambda points: _from_part(part, drawn, points, has_gaps), places)
     of_part = _difference(part, first, lambda points: part.way.of[part.way.nearest(points)[2]])
     of_part = of_part._replace(turned=rounds.turned_radius, is_broken=rounds.is_broken, outside=outside)
     of_part = of_part._replace(is_beyond=_lies_beyond(drawn, part.bar, tolerance))
@@ -159,8 +159,10 @@ def _within(polygon: Any, points: Points) -> Mask:
     return np.asarray(shapely.contains_xy(polygon, points.real, points.imag))
 
 
-def _from_part(part: MachinedPart, drawn: MeasuredPath, points: Points) -> Floats:
+def _from_part(part: MachinedPart, drawn: MeasuredPath, points: Points, has_gaps: bool) -> Floats:
     far, closest, _ = drawn.nearest(points)
+    if has_gaps:
+        far = np.where(_is_in_gap(drawn, closest, far), 0, far)
     return np.where(_within(part.polygon, closest), far, -far)
 
 
@@ -171,10 +173,10 @@ def _from_drawing(part: MachinedPart, points: Points) -> Floats:
 
 def _compared(
     part: MachinedPart, drawn: MeasuredPath, rounds: Rounds, tolerance: float
-) -> tuple[tuple[Floats, Mask], int]:
+) -> tuple[tuple[Floats, Mask], int, bool]:
     """
-    Distances of sample points along the chains [mm], and a mask of the points to compare; and the element that runs
-    along the round outside of it, where there may be metal, -1 for none.
+    Distances of sample points along the chains [mm], and a mask of the points to compare; the element that runs along
+    the round outside of it, where there may be metal, -1 for none; and whether gaps of the drawing are left out.
     """
     along, turned, outside = part.way.samples(), rounds.turned_radius, -1
     points, which = part.way.at(along)
@@ -192,10 +194,11 @@ def _compared(
         along_round = np.flatnonzero(in_air & about_axis & compared)
         outside = int(part.way.of[which[along_round[0]]]) if len(along_round) else -1
         compared &= ~in_air
-    compared &= ~_is_open_end(drawn, closest) | (far <= _ON_CIRCLE)
+    compared &= ~_is_in_gap(drawn, closest, far)
     if np.isinf(min(turned, part.bar)):
         compared &= ~_leading(part, which, far)
-    return (along, compared if compared.any() else size <= part.bar + _ON_CIRCLE), outside
+    has_places = bool(compared.any())
+    return (along, compared if has_places else size <= part.bar + _ON_CIRCLE), outside, has_places
 
 
 def _between_walls(part: MachinedPart, drawn: MeasuredPath, metal: float) -> Mask:
@@ -208,12 +211,12 @@ def _between_walls(part: MachinedPart, drawn: MeasuredPath, metal: float) -> Mas
     return np.asarray((nearest > metal) & (outline.is_arc | (across.min(axis=1) > _PARALLEL)))
 
 
-def _is_open_end(drawn: MeasuredPath, points: Points) -> Mask:
-    """True for points at an open end of a curve of the drawing."""
+def _is_in_gap(drawn: MeasuredPath, closest: Points, far: Floats) -> Mask:
+    """True for points beside a curve of the drawing: the closest point of it, so far from them, is an open end."""
     begins, last = runs(drawn.of)
     is_open = np.abs(drawn.start[begins] - drawn.end[last]) > 0
     ends = np.concatenate([drawn.start[begins][is_open], drawn.end[last][is_open]])
-    return np.asarray(np.isin(np.round(points, 6), np.round(ends, 6)))
+    return np.asarray(np.isin(np.round(closest, 6), np.round(ends, 6)) & (far > _ON_CIRCLE))
 
 
 def _leading(part: MachinedPart, which: Rows, far: Floats) -> Mask:
