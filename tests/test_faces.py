@@ -84,6 +84,16 @@ def test_an_island_stands_in_its_pocket() -> None:
     assert shapely.area(left_standing(both).polygon[0]) == pytest.approx(4 * BOX**2 - 1600 + 50)
 
 
+def test_islands_stand_in_pockets_of_islands() -> None:
+    sizes = np.arange(2.0, 0, -0.05)
+    rings = [chain(*(size * np.array(SQUARE)), left=number % 2 == 0) for number, size in enumerate(sizes)]
+    nested = Walls.concatenated([rings[0], *(ring[: len(SQUARE)] for ring in rings[1:])])
+    areas = 1600 * sizes**2
+    found = left_standing(nested).polygon[0]
+    assert shapely.area(found) == pytest.approx(4 * BOX**2 - areas[::2].sum() + areas[1::2].sum())
+    assert len(found.geoms) == 1 + len(sizes) // 2
+
+
 def test_a_sliver_between_two_passes_is_nothing() -> None:
     points = [0, 10, 10 + 0.001j, 0.001j, 0]
     assert shapely.area(left_standing(chain(*points)).polygon[0]) == 0

@@ -93,10 +93,10 @@ def test_a_feed_that_grows_is_told_again_with_what_is_known_of_it() -> None:
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [
-        (arc("40.2"), arc("96."), "known with difference 0.1, now 28"),
-        (arc("40.2"), arc("40.6"), "known with difference 0.1, now 0.3"),
-        (arc("40.2"), arc("40.202"), ""),
-        (arc("40.6"), arc("40.2"), ""),
+        (arc("40.26"), arc("96."), "known with difference 0.13, now 28"),
+        (arc("40.26"), arc("40.63"), "known with difference 0.13, now 0.315"),
+        (arc("40.26"), arc("40.262"), ""),
+        (arc("40.63"), arc("40.26"), ""),
         (near_center("400."), near_center("404."), ""),
         (near_center("400."), near_center("380."), ""),
         (near_center("400."), near_center("420."), "known with c feed 11459.156, now 12032.114"),
@@ -132,7 +132,7 @@ def test_one_fault_that_a_file_has_once_and_then_four_times_is_told() -> None:
 
 @pytest.mark.nightly
 def test_what_is_worse_is_neither_new_nor_gone_and_an_update_takes_it() -> None:
-    create(a=arc("40.2"))
+    create(a=arc("40.26"))
     write(a=arc("96."))
     result = call("check", "a.nc", "--baseline", FILE, "--fail-on-stale", "--format", "json")
     (finding,) = json.loads(result.stdout)["files"][0]["findings"]
@@ -272,7 +272,7 @@ def test_an_outline_leaves_out_what_says_nothing() -> None:
 
 @pytest.mark.nightly
 def test_a_job_file_names_the_baseline() -> None:
-    write(sub_of_a=arc("40.2"))
+    write(sub_of_a=arc("40.26"))
     Path("sub/polarcheck.toml").write_text('baseline = "known.json"\n')
     check = ("check", "sub", "--format", "concise")
     result = call(*check)
@@ -285,14 +285,14 @@ def test_a_job_file_names_the_baseline() -> None:
     assert (result.exit_code, result.stdout) == (0, "")
     assert call(*check, "--no-baseline").exit_code == 1
     assert call("baseline create", "sub", "-o", "other.json", "-q").exit_code == 0
-    write(sub_of_a=arc("40.4"))
+    write(sub_of_a=arc("40.47"))
     assert call(*check).exit_code == 1
     assert call("baseline update", "sub", "-q").output == ""
     assert call(*check).exit_code == 0
     assert call(*check, "--baseline", "other.json").exit_code == 1
     result = call("check", "sub", "-o", "json:sub/known.json")
     assert result.exit_code == 2
-    write(more_of_a=arc("40.2"))
+    write(more_of_a=arc("40.26"))
     Path("more/polarcheck.toml").write_text('baseline = "../other.json"\n')
     result = call("baseline update", ".")
     assert result.exit_code == 2
@@ -301,7 +301,7 @@ def test_a_job_file_names_the_baseline() -> None:
 
 @pytest.mark.ci
 def test_what_is_gone_fails_only_on_demand() -> None:
-    create(a=arc("40.2"))
+    create(a=arc("40.26"))
     options = ("check", ".", "--baseline", FILE)
     assert call(*options, "--fail-on-stale").exit_code == 0
     write(a=arc("40."))
@@ -313,7 +313,7 @@ def test_what_is_gone_fails_only_on_demand() -> None:
 
 @pytest.mark.nightly
 def test_an_entry_of_an_unknown_rule_is_told_with_its_line() -> None:
-    create(a=arc("40.2"))
+    create(a=arc("40.26"))
     Path(FILE).write_text(Path(FILE).read_text().replace("arc-end-off-circle", "arc-end-of-circle"))
     options = ("check", "a.nc", "--baseline", FILE)
     result = call(*options)

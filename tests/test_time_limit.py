@@ -255,22 +255,6 @@ def test_rings_by_what_they_lie_in_or_one_by_one(family: str, monkeypatch: pytes
         assert one.symmetric_difference(other).area == pytest.approx(0, abs=1e-6)
 
 
-def test_rings_in_rings() -> None:
-    """What lies in a hole is solid again; holes in nothing, and solid in solid, are left to who goes one by one."""
-    from polarcheck.geometry.polygons.faces import _nested
-
-    size = np.arange(20, 0, -1)
-    boxes = shapely.box(-size, -size, size, size)
-    hole = size % 2 == 1
-    beside = shapely.box(30, 0, 31, 1)
-    whole = _nested(np.append(boxes, beside), np.append(hole, False))
-    assert whole.is_valid
-    assert whole.area == 4 * sum((-1) ** int(number) * number**2 for number in size) + 1
-    assert len(whole.geoms) == 11
-    assert _nested(boxes[1:], hole[1:]) is None
-    assert _nested(boxes, np.zeros(20, bool)) is None
-
-
 @pytest.mark.ci
 def test_loops_that_begin_in_a_row_are_held_together_by_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
     """What they are cut into grows with their number, not with its square."""

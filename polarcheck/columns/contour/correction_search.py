@@ -344,6 +344,8 @@ class _Search:
             return None
         trial = self._elsewhere(corner, place, words)
         written, needed = (parts_of(text)[1] for text in (self.trace.run.written(words[0][1]), trial.slip.text))
+        if not (written and needed):
+            return None
         slip = next((slip for slip in slips_of(written) if float(slip.text) == float(needed)), None)
         if corner and float(written) == words[0][0].value[corner - 1]:
             slip = Slip("", "it is that of the block before it", False)
