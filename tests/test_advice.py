@@ -27,7 +27,7 @@ def only(program: str, machine: str = "fanuc-30i", tool: str = "1:radius=4", **m
     return message
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("old", "new", "says"),
     [
@@ -125,7 +125,7 @@ def test_a_way_that_strays_to_the_center_is_no_matter_of_f(lead: str) -> None:
     assert found.fix is None
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("behind", "says"),
     [
@@ -139,7 +139,7 @@ def test_what_stops_the_live_tool(behind: str, says: str) -> None:
     assert messages(program, "turning-center")["live-tool-never-stopped"].endswith(says)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("late", ["T0202 / M35", "T0202 M35", "T0202 / G0 X99. / M35"])
 def test_the_live_tool_is_stopped_too_late(late: str) -> None:
     program = SOUND.replace("G98 G0", "G97 S1000 M33 / G98 G0").replace("M30", f"G0 Z50. / {late} / M30")
@@ -158,7 +158,7 @@ def test_g0_in_a_contour_is_g1_with_its_f(block: str) -> None:
     assert [edit.text for edit in found.fix.edits] == ["G01" if "G00" in block else "G1"]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(("machine", "axis"), [("fanuc-30i", "C"), ("haas-lathe", "Y"), ("okuma-osp", "Y")])
 def test_an_angle_among_the_points_of_a_hexagon(machine: str, axis: str) -> None:
     on, off = {"fanuc-30i": ("G12.1", "G13.1"), "haas-lathe": ("G112", "G113"), "okuma-osp": ("G137 C0", "G136")}[

@@ -291,7 +291,7 @@ ROUNDED = (
 )
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("control", CONTROLS)
 def test_a_move_that_was_tried_and_what_follows_from_it_fail_no_file(control: str) -> None:
     """A square of 36 mm with corners of R6; one of its moves is in rapid traverse, and the setter answers for it."""
@@ -324,7 +324,7 @@ def test_a_finding_for_many_blocks_is_silenced_where_it_is_reported() -> None:
     assert [bool(one) for one in lines] == [found.line == 3, found.line == 4]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_silenced_findings_take_no_place_of_others_in_a_list_that_is_cut() -> None:
     on, off = "(POLARCHECK ALLOW-ON RAPID-IN-POLAR X)\n", "(POLARCHECK ALLOW-OFF RAPID-IN-POLAR)\n"
     program = HEAD + on + "G0 C5.\n" * 1100 + off + "G0 C6.\n" + TAIL
@@ -512,7 +512,7 @@ WORDS = st.sampled_from(
 KINDS = st.sampled_from(["", "-FILE", "-ON", "-OFF"])
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @settings(max_examples=60, deadline=None)
 @given(
     st.lists(

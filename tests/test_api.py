@@ -61,7 +61,7 @@ def test_check_gives_the_report_of_the_command(samples: None) -> None:
     assert json.loads(polarcheck.render(polarcheck.check("."), "json")) == by_command("check", ".", "--format", "json")
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_formats_are_those_of_the_command(samples: None) -> None:
     names = ["degrees.nc", "hexagon.nc", "../sample_programs/spiral.nc"]
     report = polarcheck.check(names)
@@ -109,14 +109,14 @@ def same(column: np.ndarray[Any, Any], values: list[Any]) -> None:
         assert column.tolist() == values
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_feeds_gives_the_tables_of_the_command(samples: None) -> None:
     for name in SAMPLES[:8]:
         tables = by_command("feeds", name, "--format", "json")["tables"]
         assert json.loads(msgspec.json.encode(polarcheck.feeds(name).tables)) == tables
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_passed_is_what_all_verdicts_say() -> None:
     good, bad = ROOT / "sample_programs" / "hexagon.nc", ROOT / "sample_programs" / "degrees.nc"
     reports = [polarcheck.check(paths) for paths in ([good], [good, bad], [bad], [good, ROOT / "none.nc"], [])]
@@ -127,7 +127,7 @@ def test_passed_is_what_all_verdicts_say() -> None:
 # ---- a text ----
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.parametrize("text", [HEXAGON, HEXAGON.decode()], ids=["bytes", "str"])
 def test_a_text_is_checked_as_its_file(samples: None, text: str | bytes) -> None:
     name, config = "hexagon.nc", "polarcheck.toml"
@@ -154,7 +154,7 @@ def test_any_text_has_a_report(text: str | bytes) -> None:
     assert polarcheck.render(report, "json")
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_texts_are_checked_in_threads() -> None:
     texts = [RAPID.replace("C5.", f"C{number}.") for number in range(5, 13)]
     with ThreadPoolExecutor(4) as pool:
@@ -208,7 +208,7 @@ JOBS = {
 }
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.one_in(12)
 @pytest.mark.parametrize(("given", "written"), JOBS.values(), ids=JOBS)
 def test_a_keyword_says_what_a_job_file_says(
@@ -244,7 +244,7 @@ SELECTIONS: dict[str, tuple[dict[str, Any], str, str]] = {
 }
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(("given", "verdict", "why"), SELECTIONS.values(), ids=SELECTIONS)
 def test_rules_that_are_left_out_need_a_reason(given: dict[str, Any], verdict: str, why: str) -> None:
     report = polarcheck.check_text(HEXAGON, tools={1: 4.0}, limits={"c_feed": 10800}, machine="fanuc-30i", **given)
@@ -272,7 +272,7 @@ def test_a_keyword_lies_over_the_job_file(tmp_path: Path, monkeypatch: pytest.Mo
     assert section.radius == 1.0
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_parts_stand_in_place_of_those_of_the_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     (tmp_path / "a.nc").write_bytes(HEXAGON)
@@ -399,7 +399,7 @@ def test_a_walk_says_what_it_leaves_out(tmp_path: Path) -> None:
         polarcheck.check(tmp_path, exclude="")
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_known_findings_are_silenced_as_the_command_does(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     (tmp_path / "a.nc").write_text(RAPID, "utf-8")
@@ -628,7 +628,7 @@ def test_the_page_names_all_that_is_public() -> None:
         assert re.search(rf"\b{name}\b", page) or name in ("__version__", "file"), name
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_the_notebook_runs(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     monkeypatch.chdir(ROOT)
     notebook = json.loads((ROOT / "docs" / "plot_a_section.ipynb").read_text("utf-8"))

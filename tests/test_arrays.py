@@ -34,7 +34,7 @@ def test_the_first_of_each_value_is_that_of_numpy(values: list[float]) -> None:
         assert found.tolist() == of_numpy.tolist()
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @given(st.lists(st.tuples(st.integers(0, 3), st.floats(-9, 9)), max_size=12))
 def test_folds_of_groups_are_those_of_their_values(pairs: list[tuple[int, float]]) -> None:
     group, values = np.array([number for number, _ in pairs], np.int64), np.array([value for _, value in pairs])
@@ -67,7 +67,7 @@ def test_a_column_of_one_value_takes_the_memory_of_one_and_cannot_be_written_to(
     assert repeated(np.int64(3), 0).tolist() == []
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @given(NUMBERS, st.floats(allow_nan=False))
 @example([1.0], 8.99e307)
 @example([float("-inf")], float("inf"))

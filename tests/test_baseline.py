@@ -222,7 +222,7 @@ def test_one_more_of_the_same_is_new() -> None:
     assert result.stdout.count("\n") == 1
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_one_less_is_said_and_can_be_dropped() -> None:
     make(a__nc=TWICE, b__nc=RAPID)
     baseline("create", ".", "--reason", "OLD")
@@ -252,7 +252,7 @@ def test_an_update_takes_what_is_new_and_keeps_reasons() -> None:
     ]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_files_and_rules_that_are_not_asked_keep_what_is_known_of_them() -> None:
     make(a__nc=RAPID, b__nc=RAPID)
     baseline("create", ".")
@@ -583,7 +583,7 @@ def test_nothing_acts_on_a_terminal() -> None:
 # ---- reports ----
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_what_is_silenced_is_listed_on_demand() -> None:
     make(a__nc=RAPID)
     baseline("create", "a.nc")

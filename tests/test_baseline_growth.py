@@ -106,7 +106,7 @@ Numbers = tuple[str, str]
 CENTER, NARROW = "path-through-center", "interference"
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.parametrize(
     ("program", "old", "new", "expected", "options"),
     [
@@ -141,7 +141,7 @@ def test_deeper_or_faster_is_worse(
     assert [line for line in told(*options) if not line.startswith("feed-")] == ([expected] if expected else [])
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_lines_that_shift_and_an_update_keep_what_is_known() -> None:
     create(narrow("-.5", "150"))
     write(a=narrow("-.5", "150").replace("G12.1", "(NEW)\nG4 U1.\n\nG12.1"))

@@ -31,6 +31,7 @@ def test_the_program_without_a_fault_passes() -> None:
     assert (report.verdict, said(report)) == ("pass", [])
 
 
+@pytest.mark.nightly
 @looped("name", FAULTS, one_in=12)
 def test_one_fault_is_found_for_the_right_reason(name: str) -> None:
     fault = FAULTS[name]
@@ -56,6 +57,7 @@ def test_the_twin_has_the_same_blocks_on_a_mill() -> None:
     assert tool_table(2.0).splitlines()[3] == "T4 P4 D0.157480"
 
 
+@pytest.mark.nightly
 def test_a_long_step_is_milled_in_several_sections(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(generate, "LONGEST_SECTION", 3000)
     text = generate.program(20_000).decode()

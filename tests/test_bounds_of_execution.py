@@ -125,7 +125,7 @@ def of_bound(report: FileReport) -> list[tuple[str, str]]:
     return [one for one in rules_and_severities(report) if one[0] in ("endless-loop", "polar-never-left")]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("in_mode", [True, False], ids=["in the mode", "before the mode"], one_in=32)
 @looped("loop", LOOPS)
 def test_a_bound_within_the_mode_is_one_warning_and_leaves_the_file_unverified(loop: str, in_mode: bool) -> None:
@@ -233,7 +233,7 @@ def test_behind_calls_that_run_once_positions_and_variables_are_not_known(own: s
     assert trace.path.z[trace.blocks.line == 6].tolist() == [3.0]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_programs_before_one_that_is_broken_off_keep_all_their_rows() -> None:
     head = "O1\nG0 X60.\n" + "X61.\n" * 40 + "M98 P3 L1500\nM30\n"
     endless = "O2\n#1=0\nWHILE[#1LT90000]DO1\n#1=#1+1\nX1.\nEND1\nM30\nO3\n" + "X7.\n" * 10 + "M99\n"

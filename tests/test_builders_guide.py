@@ -173,7 +173,7 @@ def test_a_variable_that_was_never_set_is_one_finding(old: str, new: str, follow
 NEXT_TOOL = "M1\nT0202\nM35\nG0 X5. Z5.\nM30\n"
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("wrong", "block", "severity"),
     [
@@ -651,7 +651,7 @@ def test_one_range_alone(feed: dict[str, float], where: str, recommended: str) -
 # ---- the approach ----
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("convert", [str, in_mm])
 def test_the_approach_is_od_and_cutter_and_clearance(convert: Callable[[str], str]) -> None:
     """X2.15 of the sample is 1.3 + .75 + .1, X1.8 of the methods 1.25 + .5 + .05."""

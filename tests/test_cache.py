@@ -89,7 +89,7 @@ def shown(result: Result) -> tuple[int, str, str]:
     return result.exit_code, result.stdout, result.stderr
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.one_in(11)
 @pytest.mark.parametrize("form", formats())
 def test_reports_from_the_cache_are_those_of_a_fresh_run(form: str, checked: list[str]) -> None:
@@ -103,7 +103,7 @@ def test_reports_from_the_cache_are_those_of_a_fresh_run(form: str, checked: lis
     assert checked == (["tool.nc"] if form == "html" else [])
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.one_in(3)
 @pytest.mark.parametrize("options", [("--part", "--show-silenced"), ("--baseline", "known.json"), ("--statistics",)])
 def test_what_is_added_to_reports_or_taken_from_them(options: tuple[str, ...], checked: list[str]) -> None:
@@ -159,7 +159,7 @@ CHANGES: dict[str, Callable[[], None]] = {
 }
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.one_in(15)
 @pytest.mark.parametrize("name", CHANGES)
 def test_what_has_changed_is_checked_again(name: str) -> None:
@@ -187,7 +187,7 @@ def test_changes_in_any_order(names: list[str]) -> None:
         assert shown(check(".", "--format", "json")) == shown(check(".", "--format", "json", "--no-cache"))
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.one_in(11)
 @pytest.mark.parametrize(
     ("arguments", "environment"),
@@ -236,7 +236,7 @@ def test_where_it_lies(tmp_path: Path) -> None:
     assert (tmp_path / "environment").is_dir()
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_what_is_never_kept(checked: list[str], monkeypatch: pytest.MonkeyPatch) -> None:
     """What has ended by its time, what could not be read, a bug, standard input."""
     for _ in range(2):
@@ -253,7 +253,7 @@ def entries() -> list[Path]:
     return sorted(Path(NAME).rglob("*.cache"))
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_a_broken_cache_is_ignored(checked: list[str]) -> None:
     fresh = shown(check())
     assert entries()
@@ -284,7 +284,7 @@ def test_a_cache_of_somebody_else_makes_nothing_pass(checked: list[str], tmp_pat
     assert checked
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.skipif(sys.platform == "win32", reason="links need more than files there")
 def test_a_link_is_never_followed(tmp_path: Path) -> None:
     (tmp_path / "other").mkdir()
@@ -349,7 +349,7 @@ def test_a_full_disk_leaves_no_cache_that_git_takes_in(
     assert checked == []
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.parametrize("content", ["", "*", "!*\n", "* \n!a\n", "*\n" * 500])
 @pytest.mark.parametrize("name", [".gitignore", "CACHEDIR.TAG"])
 def test_a_file_that_says_what_the_folder_is_is_written_anew(name: str, content: str) -> None:
@@ -360,7 +360,7 @@ def test_a_file_that_says_what_the_folder_is_is_written_anew(name: str, content:
     assert Path(NAME, name).read_text() == before
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_the_folder_that_the_user_names_keeps_what_it_says() -> None:
     Path("mine").mkdir()
     for content, left in (("out\n", "out\n"), ("", "*\n")):
@@ -391,7 +391,7 @@ def test_without_a_place_for_the_key_nothing_is_kept(tmp_path: Path, monkeypatch
     assert store.user_key() is None
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_an_older_version_is_removed(checked: list[str]) -> None:
     old = Path(NAME, "0123456789abcdef")
     old.mkdir(parents=True)
@@ -438,7 +438,7 @@ def test_two_processes_at_once(tmp_path: Path) -> None:
     assert not list(Path(folder).rglob("*.new"))
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_an_interrupted_run_keeps_what_it_has_finished(checked: list[str], monkeypatch: pytest.MonkeyPatch) -> None:
     fresh = tasks._check
 

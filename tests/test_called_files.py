@@ -303,7 +303,7 @@ def test_a_finding_of_one_call_says_of_which(folder: Path, starts: list[int], en
     assert "(in the call" not in report.findings[0].message
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_the_call_may_stand_in_a_called_program() -> None:
     main = "O1\nG98 G40 T0101\nM98 P3\nM30\nO3\nG0 Z5. X60. C0\nM98 P2\nG0 X41. C0\nM98 P2\nM99\n"
     report = report_of(main + "O2\n" + RAMP, "fanuc", "1:radius=2,nose=0")

@@ -64,7 +64,7 @@ def edit(path: str, before: str, after: str, count: int = -1) -> None:
 # ---- the page ----
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_the_example_prints_what_its_page_shows(example: Path) -> None:
     result = certify(example)
     assert result.exit_code == 0
@@ -164,7 +164,7 @@ def test_other_orders_fail(example: Path, before: str, after: str, said: str) ->
     assert said in reasons("contour/lathe-7")
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_an_order_elsewhere_on_the_path_fails(example: Path) -> None:
     edit(CONTOUR, "F1000.000\n", "F1000.000\nM8\n")
     assert certify(example, "--update", "--case", "contour/lathe-7").exit_code == 0
@@ -174,7 +174,7 @@ def test_an_order_elsewhere_on_the_path_fails(example: Path) -> None:
     ]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.parametrize("orders", [True, False])
 def test_a_golden_trace_of_an_earlier_version_is_to_be_written_anew(example: Path, orders: bool) -> None:
     golden = Path("golden/contour.jsonl")
@@ -205,7 +205,7 @@ def test_an_index_of_the_other_control_that_is_another(example: Path, turned: st
     assert reason.startswith(said)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_a_fault_of_one_control_is_none_of_the_other_that_runs_its_golden_trace(example: Path) -> None:
     edit("post.toml", 'same_path_as = "lathe-7"', 'same_path_as = "lathe-7"\ngolden = "golden/8-{feature}.jsonl"')
     assert certify(example, "--update", "--case", "contour/lathe-8").exit_code == 0
@@ -247,7 +247,7 @@ NEGATIVE = 'findings = [{ rule = "rapid-in-polar", block = "G0 G40 X50.000" }]'
 
 
 @pytest.mark.one_in(2)
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.parametrize(
     ("findings", "said"),
     [
@@ -297,7 +297,7 @@ def test_a_program_that_is_not_there(example: Path) -> None:
 
 
 @pytest.mark.one_in(4)
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.parametrize(
     ("arguments", "status"),
     [((), 0), (("--strict",), 1), (("--case", "contour/lathe-8"), 0), (("--case", "contour/lathe"), 2)],
@@ -397,7 +397,7 @@ def test_a_job_file_applies_where_the_manifest_names_it(example: Path) -> None:
 # ---- golden traces ----
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_an_update_says_what_changes_and_keeps_what_fails(example: Path) -> None:
     before = Path("golden/indexing.jsonl").read_bytes()
     edit(CONTOUR, "X50.000 C0. F1000.000\nG1 Z-3", "X52.000 C0. F1000.000\nG1 Z-3")
@@ -419,7 +419,7 @@ def test_an_update_says_what_changes_and_keeps_what_fails(example: Path) -> None
 
 
 @pytest.mark.one_in(3)
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.parametrize(
     ("golden", "said"),
     [
@@ -438,7 +438,7 @@ def test_an_update_overwrites_no_other_file(example: Path, golden: str, said: st
     assert example.read_text("utf-8").startswith(text)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_a_golden_trace_that_is_none(example: Path) -> None:
     Path("golden/contour.jsonl").write_text('{"section": 0}\n', "utf-8")
     (reason,) = reasons("contour/lathe-7")
@@ -496,13 +496,13 @@ def test_the_certificate_and_the_manifest_fit_their_schemas(example: Path) -> No
         jsonschema.validate(value, schema)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_the_matrix_of_some_cases_has_no_others(example: Path) -> None:
     shown = certify(example, "--case", "contour/lathe-8").stdout
     assert shown == "Example post 1.0\n\n         lathe-8\ncontour  pass\n\n1 case: 1 pass, 0 fail\n"
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_python_gives_the_certificate_of_the_command(example: Path) -> None:
     found = polarcheck.certify("post.toml", cases=["contour/lathe-7"])
     assert json.loads(msgspec.json.encode(found)) == certificate(example, "--case", "contour/lathe-7")
@@ -558,7 +558,7 @@ def test_files_are_relative_to_the_manifest(example: Path) -> None:
     assert found["state"] == "fail"
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("name", ["contour", "arc-above-180"])
 def test_drawing_and_part_of_a_job_are_one(example: Path, name: str) -> None:
     certify("init", "suite")

@@ -227,7 +227,7 @@ def test_a_fault_in_a_program_that_two_channels_call_is_told_once() -> None:
     assert lines == {"$1": [19], "$2": [19]}
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("channel", [1, 2])
 def test_a_program_that_another_channel_calls_runs_there_alone(channel: int) -> None:
     # By itself it would lack the F and the tool of its caller.
@@ -256,7 +256,7 @@ def test_a_program_ends_with_m99() -> None:
     assert said(report_of(file, "fanuc", *TOOLS)) == []
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("channel", [1, 2])
 def test_block_skip_of_one_channel(channel: int) -> None:
     skipped = {number: PROGRAMS[number] for number in (1, 2)}
@@ -269,7 +269,7 @@ def test_block_skip_of_one_channel(channel: int) -> None:
     assert found.message.endswith("(with block skip off)")
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_common_variables_of_another_channel_are_not_vacant() -> None:
     reads = "G98 G40\nT0202\nG0 X60. C0\nG12.1\nG1 X40. F200\nC#{0}\nX60.\nG13.1\nM30\n"
     for number in (101, 501):
@@ -380,7 +380,7 @@ def test_remarks_and_comments_stand_in_the_order_of_the_file() -> None:
 
 
 @pytest.mark.one_in(7)
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.parametrize(
     "line", ["$1\n", "$1\n$2\n", "O1$1\n!2L1\n", "$9 !1\n", "$1!1L1!2L2(A)\n", "N1 $3;$4;\n", "!1L1;"]
 )
@@ -390,7 +390,7 @@ def test_very_many_marks(line: str) -> None:
     assert len(report.findings) < 20
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_nine_channels() -> None:
     file = "O1\n" + "".join(f"${number}\n{FIRST}" for number in range(9, 0, -1))
     report = report_of(file, "fanuc", *TOOLS)
@@ -398,7 +398,7 @@ def test_nine_channels() -> None:
     assert [section.channel for section in report.polar_sections] == [f"${number}" for number in range(9, 0, -1)]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_other_bytes_than_of_ascii_keep_their_places() -> None:
     file = f"O1(H\u00dcLSE \u2013 1)\n$1\n(\u00c4)\n{FIRST}$2\n{SECOND.replace('C-.5', 'G0 C-.5')}"
     for encoding in ("utf-8", "latin-1", "utf-16"):
@@ -423,7 +423,7 @@ def said_by(command: str, *options: str) -> str:
     return CliRunner().invoke(main, [command, "a.nc", "--tool", "1:radius=2", *options]).stdout
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_reports_name_the_channel() -> None:
     assert "at   a.nc:8:1, channel $1\n" in said_by("check")
     assert said_by("check", "--format", "concise").startswith("a.nc:8:1: error: $1: G0 cannot")

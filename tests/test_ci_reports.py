@@ -248,7 +248,7 @@ def test_no_text_of_a_program_is_a_link_in_sarif() -> None:
     assert "](" not in result["message"]["text"]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_sarif_has_the_page_of_each_rule() -> None:
     found = [finding(rule=name, line=line) for line, name in enumerate(load_all(), 1)]
     run = sarif(file(*found))
@@ -309,7 +309,7 @@ def test_a_baseline_of_the_command_makes_the_others_new() -> None:
 
 
 @pytest.mark.one_in(10)
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.parametrize("form", OF_MANY)
 def test_many_files_are_written_as_few_are(form: str) -> None:
     """Piece by piece, and where the format can file by file, as they are finished."""
@@ -490,7 +490,7 @@ def test_gitlab_fingerprints_differ_and_stay() -> None:
 # ---- junit ----
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_junit_fits_its_schema_and_the_schema_can_refuse() -> None:
     root = junit(nasty(), file(path="b.nc"), file(path="c.nc", sections=0), unread(NASTY, path="n.nc"))
     failure = next(root.iter("failure"))
@@ -594,7 +594,7 @@ def test_json_lines_say_what_json_says() -> None:
 # ---- statistics ----
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_statistics_stand_in_place_of_the_findings() -> None:
     make(a__nc=RAPID + RAPID, b__nc=RAPID, c__nc=GOOD)
     result = check("a.nc", "b.nc", "c.nc", *RAPID_ONLY, "--statistics")

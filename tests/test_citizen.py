@@ -29,7 +29,7 @@ def citizen(text: str, changes: Changes | None = None) -> FileReport:
     return report_of(text, "citizen", "11:radius=1,nose=0", changes=changes)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     "spindle",
     [

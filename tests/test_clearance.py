@@ -29,7 +29,7 @@ def keeps_away(walls: Curves, ways: Curves, radius: float) -> bool:
     return clearance.keeps_away(walls, ways, np.full(len(ways), radius), TOLERANCE)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @given(LINES, LINES, st.floats(0.1, 30.0))
 def test_lines_keep_away_where_their_distance_says_so(
     walls: list[tuple[complex, complex, int]], ways: list[tuple[complex, complex, int]], radius: float

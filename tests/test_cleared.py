@@ -76,7 +76,7 @@ CASES = {
 }  # fmt: skip
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("name", CASES)
 def test_what_is_told_of_paths(name: str) -> None:
     paths, expected = CASES[name]
@@ -113,7 +113,7 @@ def test_without_an_offset_it_is_said_how_one_is_called() -> None:
 
 
 @pytest.mark.one_in(6)
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.parametrize("seed", range(6))
 def test_the_outline_lies_at_r_from_the_path(seed: int) -> None:
     """Random ways of lines and arcs: each point of each element, and the area, against a finer buffer of shapely."""

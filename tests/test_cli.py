@@ -123,7 +123,7 @@ def test_what_is_not_evaluated_fails_only_where_that_is_asked_for() -> None:
     ]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_the_offset_table_of_a_job_is_no_program_of_its_folder() -> None:
     table = "%\nG10 P1 R4.\n%\n"
     make(a__nc=GOOD, TOOLOFST__TXT=table, other__txt=table, O0002__nc=table)
@@ -571,7 +571,7 @@ def test_a_report_that_cannot_be_written_is_told_and_the_other_one_printed() -> 
     assert "unverified  a.nc" in result.stdout
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("arguments", "environment", "colored"),
     [
@@ -611,7 +611,7 @@ def test_options_come_from_the_environment_too() -> None:
                 assert option.envvar == f"POLARCHECK_{written}"
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_the_report_is_long_for_up_to_three_files_and_short_beyond() -> None:
     make(a__nc=RAPID, b__nc=GOOD, c__nc=GOOD)
     long = check(".", *RAPID_ONLY).stdout

@@ -114,7 +114,7 @@ HOSTILE = (
 )
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("machine", ["fanuc", "okuma-osp", "siemens-transmit"], one_in=14)
 @looped("repeated", HOSTILE)
 def test_hostile_comments_of_any_kind_are_checked_by_their_length(repeated: str, machine: str) -> None:
@@ -145,7 +145,7 @@ def untaken(report: FileReport) -> list[tuple[str, int]]:
     return [(one.reason, one.blocks) for one in report.not_evaluated if one.rule == "start-up-shorter-than-radius"]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("program", "taken", "offset"),
     [

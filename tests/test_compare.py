@@ -115,7 +115,7 @@ def test_macro_and_its_blocks_are_the_same_metal() -> None:
     assert comparison(head + MACRO.format(radius="20.1") + tail, head + blocks + tail).deviation == pytest.approx(0.1)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_arcs_by_radius_by_center_and_in_parts_are_the_same_metal() -> None:
     program = "O1\nG21 G98 G40\nT0101\nG0 X70. Z2. C0\nG12.1\nG1 X40. C0 F200\n{}G13.1\nM30\n"
     whole = program.format("G3 X-40. C0 R20.\nG3 X40. C0 R20.\n")
@@ -202,7 +202,7 @@ def of_sections(*sections: tuple[int, int]) -> str:
     return f"O1\nG21 G98 G40\nT0101\n{body}G0 X100. Z50.\nM30\n"
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("new", "changes"),
     [
@@ -253,7 +253,7 @@ M99
 """
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_programs_without_sections_are_compared() -> None:
     assert comparison(TURNING, changed(("X50.", "X50.000"), program=TURNING)).verdict == SAME_WORDS
     unrolled = changed(("M98 P2 L2", "G0 W1.\nW1."), ("O2\nG0 W1.\nM99\n", ""), program=TURNING)
@@ -410,7 +410,7 @@ def pair(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_exit_codes(pair: Path) -> None:
     assert run("old.nc", "old.nc").exit_code == 0
     differing = run("old.nc", "new.nc")

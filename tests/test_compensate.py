@@ -111,7 +111,7 @@ def text_of(outcome: Outcome) -> str:
 # ---- the contour is that of the part ----
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.one_in(12)
 @pytest.mark.parametrize(
     ("name", "round_corners"),
@@ -170,7 +170,7 @@ def square(half: float, feed: int) -> list[str]:
     return [f"G1 X{2 * half} C0. F{feed}", *(f"X{x} C{c}" for x, c in corners), f"X{2 * half} C0."]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_rough_and_finish_have_their_part_on_one_side() -> None:
     """The finishing pass takes away what the roughing pass leaves, and so says where the part is."""
     blocks = "\n".join([*square(15.0, 250), *square(14.0, 120)])
@@ -205,7 +205,7 @@ def test_flats_that_do_not_close() -> None:
 # ---- the program stays as it is written ----
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_what_else_stands_in_the_program_stays() -> None:
     """N words, CR LF, no blanks, comments, lower case, latin-1 bytes, M codes beside moves."""
     lines = [
@@ -240,7 +240,7 @@ def test_inch_and_incremental_words() -> None:
     assert [move.end for move in moves] == pytest.approx(corners, abs=1e-4)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.parametrize("seed", [2, 4, 20, 22, 49, 84, 104, 190, 194])
 def test_programs_of_setters_there_and_back(seed: int) -> None:
     """Sound programs in the words of several controls; the new program is read back."""
@@ -262,7 +262,7 @@ def with_square(before: str = "", after: str = "") -> str:
     return PROGRAM.format(x="90.", blocks=SQUARE).replace(before, after)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_moves_behind_the_contour_keep_their_code_and_feed() -> None:
     """G0 Z2. X90.: the modal code of the last move is said again; F alone in a block stays alone."""
     blocks = "\n".join(["G0 Z-4.", *("G1 " + block for block in SQUARE.splitlines()), "G0 Z2.", "X90."])
@@ -337,7 +337,7 @@ def call(*arguments: str) -> Result:
     return CliRunner().invoke(main, ["compensate", "--no-config", *arguments], prog_name="polarcheck")
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.usefixtures("own_folder")
 def test_the_command() -> None:
     text = PROGRAM.format(x="90.", blocks=SQUARE)
@@ -371,7 +371,7 @@ def test_long_paths() -> None:
     assert at_corners == pytest.approx([25 - R / math.cos(math.pi / 99)] * len(at_corners), abs=0.02)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_a_path_that_stays_that_of_the_center_is_to_be_decided() -> None:
     """Two squares close; the path between them does not, and has moves to it and away from it."""
     square = [f"G1 X{x} C{c}" for x, c in ((36, 0), (36, 18), (-36, 18), (-36, -18), (36, -18), (36, 0))]

@@ -602,7 +602,7 @@ def distance_to_block(points: np.ndarray, path: Path, row: int) -> np.ndarray:
     return np.where(at <= abs(sweep), abs(abs(points - center) - abs(start - center)), ends)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @settings(max_examples=60, deadline=None)
 @given(contours(), RULES, st.floats(-3, 3))
 def test_turning_the_contour_turns_the_path(program, rules, angle):
@@ -625,7 +625,7 @@ def test_mirroring_swaps_g41_and_g42(program, rules):
     assert_same(mirrored, replace(tool, kind=swapped, **points))
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @settings(max_examples=60, deadline=None)
 @given(contours(), RULES)
 def test_negative_radius_swaps_sides(program, rules):
@@ -653,7 +653,7 @@ def test_radius_zero_gives_the_programmed_path(program, rules):
     assert flagged(tool).keys() <= {"arc_center_on_path"}
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @settings(max_examples=60, deadline=None)
 @given(st.lists(contours(), min_size=1, max_size=3), RULES)
 def test_path_is_continuous_within_a_section(programs, rules):
@@ -666,7 +666,7 @@ def test_path_is_continuous_within_a_section(programs, rules):
     assert (np.diff(tool.row) >= 0).all()
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @settings(max_examples=60, deadline=None)
 @given(contours(), RULES, st.data())
 def test_unknown_values_stay_where_they_are(program, rules, data):
@@ -695,7 +695,7 @@ def assert_same(one: ToolPath, two: ToolPath) -> None:
         assert all(near(a, b) for a, b in zip(ours[2:5], theirs[2:5], strict=True))
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @settings(max_examples=60, deadline=None)
 @given(rings(), st.sampled_from("AB"))
 def test_tool_keeps_its_distance(program, start_up):

@@ -257,6 +257,7 @@ WITH_BLANKS = {
 }
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("shell", COMMANDS)
 def test_a_real_shell_completes(shell: str, tmp_path: Path) -> None:
     if not is_there(shell):

@@ -171,7 +171,7 @@ def test_offset_tables_of_two_lathes_are_not_mixed() -> None:
     assert values["tools.8.radius"] == (5, "programs", "two.txt, named in polarcheck.toml:6, [[programs]] 1")
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_a_pattern_that_matches_nothing_in_a_folder_that_was_walked_is_a_warning() -> None:
     make("sub/O1234.nc", "sub/deep/O1.nc")
     job("[[programs]]\nfiles = ['O12*.nc', 'O13*.nc']\n", "sub/polarcheck.toml")
@@ -256,7 +256,7 @@ def test_a_pattern_that_means_nothing_is_told(pattern: str) -> None:
 # ---- what walks pass over ----
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_what_is_excluded_is_found_by_no_walk_and_checked_where_it_is_named() -> None:
     make("a.nc", "old/b.nc", "x/old/c.nc", "d.bak.nc", "y/e.nc", "y/z/f.nc")
     job("exclude = ['old', '*.bak.nc', 'y/z']\n")
@@ -290,7 +290,7 @@ def test_where_all_is_excluded_nothing_is_checked_and_that_is_said(path: str) ->
     assert result.stderr == "polarcheck: warning: all that is named is excluded: nothing is checked\n"
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("text", "options", "read", "count"),
     [
@@ -848,7 +848,7 @@ def uncommented(text: str) -> str:
     )
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_init_writes_what_the_programs_tell_and_says_what_is_left() -> None:
     make("O1.nc", "x/O2.nc", text=MILL.replace("T0808", "T0808 (D=8. END MILL)"))
     make("O3.nc", text="O3\nG0 X1.\nM30\n")
@@ -969,7 +969,7 @@ def test_the_endings_by_which_init_has_found_programs_are_those_of_the_next_chec
     assert "1 file checked" in call("check", ".").stdout
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_init_reads_each_program_and_stops_at_none_that_cannot_be_read() -> None:
     make("O1.nc")
     Path("O2.nc").write_bytes(b"\0" * 50 + MILL.encode().replace(b"T0808", b"T0909") + b"\x1a")
@@ -1022,7 +1022,7 @@ def test_the_page_has_each_key() -> None:
     assert wanted <= rows, sorted(wanted - rows)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_each_job_file_of_the_page_is_one() -> None:
     blocks = re.findall(r"```toml\n(.*?)```", PAGE.read_text("utf-8"), re.DOTALL)
     assert len(blocks) > 2

@@ -36,7 +36,7 @@ def disc(radius: float, center: complex = 0j) -> shapely.Polygon:
     return polygon_of([Piece("ccw", center + radius, center + radius, center)])
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("family", FAMILIES, one_in=13)
 def test_polarcheck_agrees_with_the_reference(family: str) -> None:
     found = [comparison for seed in range(SHARE) for comparison in compare_seed(seed, family)]
@@ -192,7 +192,7 @@ def test_twins_have_the_same_part_and_the_same_path(seed: int) -> None:
         assert program_of(seed, twin).part.area == pytest.approx(area, rel=2e-3)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_a_disagreement_is_seen() -> None:
     """Each kind, by a program that polarcheck judges well and a part that is not the one that it makes."""
     blocks = "G1 X80. C0. F200/G42 X40. C0./C20./X-40./C-20./X40./C0./G40 X80."

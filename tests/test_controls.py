@@ -91,7 +91,7 @@ def test_the_lsis_example_is_a_quarter_of_a_circle_with_x_as_a_radius() -> None:
     assert not report_of(LSIS, "lsis").findings
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("name", ["gsk-988", "fanuc-16i", "turning-center"], one_in=2)
 def test_the_m700v_example_is_wrong_where_x_is_a_diameter(name: str) -> None:
     rules = {finding.rule for finding in report_of(M700V.text, name).findings}
@@ -292,7 +292,7 @@ def test_an_open_contour_is_one_pass() -> None:
     assert [one.rule for one in finding.follows] == ["contour-not-closed", "nearly-regular-contour"]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_infeed_is_a_word_of_one_control() -> None:
     assert not tables_of(GSK_CYCLE, "fanuc")["infeed"].depth.any()
     assert (4, "polar-switch-not-alone") in said(report_of(GSK_CYCLE, "fanuc"))
@@ -435,7 +435,7 @@ def other(program: str, name: str) -> str:
     return said
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_a_program_for_another_machine_is_known() -> None:
     assert "--machine mitsubishi-m700" in other(M700V.text, "fanuc")
     assert "X is a radius" in other(M700V.text, "fanuc")
@@ -454,7 +454,7 @@ def test_a_program_under_its_own_machine_is_left_alone() -> None:
         assert not other(program, name)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_a_program_that_no_machine_reads_well_gets_no_advice() -> None:
     """All sixteen readings of the arcs of en.cncarea.com fail."""
     program = (
@@ -469,7 +469,7 @@ def test_messages_name_the_virtual_axis_of_the_control() -> None:
     assert "2 mm in Y" in next(f.message for f in found if f.rule == "start-up-shorter-than-radius")
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("name", "units", "axis", "severity", "said_of_z"),
     [
@@ -576,7 +576,7 @@ def test_feed_per_revolution_in_the_mode_is_a_note_where_the_documents_allow_it(
     assert [(line, severity) for line, severity, _ in told] == [(4, "note")]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("plane", ["G17 XC", "G17XC", "G17 UH", "G17 U H", "G17 X C", "G91 G17 XU\nG90"])
 def test_a_mazak_selects_the_plane_with_its_axes(plane: str) -> None:
     program = f"O1\nG94 G0 X50. Z2. C0\n{plane}\nG12.1\nG1 X40. F200\nG13.1\nM30\n"
@@ -610,7 +610,7 @@ def test_the_clamp_is_switched_by_a_parameter(on: int, severity: str, text: str,
     assert report.polar_sections[0].c_feed == pytest.approx(np.degrees(rate / 125))
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("on", [0, 1])
 def test_the_alarm_of_c_is_an_alarm_beside_the_clamp(on: int) -> None:
     """Note 1: beyond the limit of C the control stops; no parameter of this one slows C down."""
@@ -666,7 +666,7 @@ Y1.125
 """
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("absolute", "incremental"),
     [("G390", "G391"), ("g390", "g391"), ("G390.", "G391."), ("N5 G0390", "G0391"), ("G390 M9", "G40 G391")],

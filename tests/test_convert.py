@@ -138,7 +138,7 @@ def section(*blocks: str, head: str = "G21 G98 G40", c: str = "C0") -> str:
 # ---- the words ----
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(("target", "expected"), [("okuma-osp", OKUMA), ("haas-lathe", HAAS)])
 def test_a_program_is_written_in_the_words_of_the_other_control(target: str, expected: str) -> None:
     """The words of the facts: G137, G101 and L, arcs up to 90 deg; G17 and G112, Y as a radius."""
@@ -180,7 +180,7 @@ def test_the_axes_of_a_plane_stand_together(block: str) -> None:
     assert "X C" not in words
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("before", "behind", "x"),
     [
@@ -250,7 +250,7 @@ def test_there_and_back_gives_the_same_words() -> None:
     assert len(back.decisions) == 1
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("target", "codes"), [("takisawa", ["G21"]), ("haas-lathe", ["G21", "G17", "G18"]), (SOURCE, ["G21"])], one_in=3
 )
@@ -450,7 +450,7 @@ def test_a_plane_that_lies_otherwise_is_turned() -> None:
     )
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("c", "direction", "target", "expected"),
     [
@@ -479,7 +479,7 @@ def test_c_turns_by_no_other_move_than_rapid_traverse() -> None:
     ]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_outer_corners_need_a_code_and_acute_ones_the_path_of_the_center() -> None:
     square = section("G42 G1 X40. C0 F200", "C20.", "X-40.", "C-20.", "X40.", "C0", "G40 X60.")
     text = convert(square, SOURCE, "siemens-transmit", "1:radius=4").data.decode()
@@ -528,7 +528,7 @@ def _called(target: str, calls: str) -> list[tuple[str, str]]:
     return list(zip(words, said, strict=True))
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("target", "calls", "expected"),
     [
@@ -549,7 +549,7 @@ def test_a_tool_with_a_name_gets_a_free_number(target: str, calls: str, expected
         assert text.startswith(f"{word} stands for the tool {name}: choose the number of its station")
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_what_no_profile_knows_is_a_comment_to_decide() -> None:
     program = HEXAGON.replace("M70", "M70 M77").replace("N200 G0", "N195 G71 U1.5 R.5\nN200 G0")
     outcome = convert(program, "takisawa", "okuma-osp", "3:radius=4")
@@ -586,7 +586,7 @@ def test_the_sub_spindle_is_refused() -> None:
     assert "the sub-spindle turns the plane" in str(refused(program, "doosan", "okuma-osp"))
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.parametrize(
     ("name", "broken"),
     [
@@ -606,7 +606,7 @@ def test_a_wrong_move_is_found_when_the_program_is_read_back(
     assert refused(haas, "haas-lathe", "siemens-transmit")
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.one_in(2)
 @pytest.mark.parametrize("what", ["feed", "side", "code", "z"])
 def test_a_wrong_word_is_found_when_the_program_is_read_back(what: str, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -637,7 +637,7 @@ REASONS = (
 
 
 @pytest.mark.one_in(12)
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.parametrize("target", [SOURCE, "okuma-osp", "siemens-transmit", "haas-lathe", "mitsubishi-m700", "hurco"])
 @pytest.mark.parametrize("source", ["doosan", "haas-lathe", "okuma-osp", "siemens-transmit"])
 def test_programs_of_setters_are_converted(source: str, target: str) -> None:
@@ -657,7 +657,7 @@ def test_programs_of_setters_are_converted(source: str, target: str) -> None:
 
 @pytest.mark.one_in(3)
 @pytest.mark.corpus
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.skipif(not CORPUS.is_dir(), reason="the corpus is not there")
 @pytest.mark.parametrize("target", ["haas-lathe", "okuma-osp", "siemens-transmit"])
 def test_real_programs_are_converted_or_refused(target: str) -> None:
@@ -818,7 +818,7 @@ OF_HAAS = "%\nO1\nG98 G40\nT0101\nG0 X3. Z.1 C0\nG17\nG112\nG1 X1. Y.4 F8.\nX1.5
 AND_DWELLS = MILLED_AT_30.replace("G13.1", "G13.1\nG4 P1500")
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.usefixtures("own_folder")
 @looped(
     ("program", "source", "target", "keys"),
@@ -857,7 +857,7 @@ def test_a_value_in_doubt_that_changes_a_number_is_accepted_or_nothing_is_writte
     assert "expected one of control." in call(*options, "--accept", "control.y").stderr
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("target", ["fanuc-30i", "okuma-osp", "siemens-transmit", "mazak-eia", "mitsubishi-m700"])
 def test_marks_of_channels_are_comments_and_waits_are_decided(target: str) -> None:
     """In a block of their own, at the head of one, behind a move in the mode, and beside a word that stays."""
@@ -895,7 +895,7 @@ def test_no_tool_is_the_end_of_its_offset() -> None:
     assert words == ["T8", "D1", "D0", "T3", "D1", "D0"]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("target", ["okuma-osp", "haas-lathe", "doosan", "takisawa"])
 def test_f_of_plain_moves_of_c_is_decided_where_it_may_count_otherwise(target: str) -> None:
     """Once for each F; not where both controls count alike, nor beside moves without C, nor in the mode."""

@@ -132,6 +132,7 @@ DEFECTS: dict[str, set[tuple[int, str]]] = {
 }
 
 
+@pytest.mark.nightly
 @looped("name", DEFECTS, one_in=4)
 def test_known_defects_are_named(name: str) -> None:
     shown = report_of_file(POLAR / name).findings

@@ -162,7 +162,7 @@ M30
 """
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     "turning",
     [

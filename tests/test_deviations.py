@@ -145,7 +145,7 @@ def test_metal_that_stays_or_is_missing_is_found_where_shapely_finds_it(seed: in
     assert any(comparison.differs for comparison in found) == leaves_metal(one, min(certain, turned) - 0.02)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("seed", sound_seeds(1), one_in=13)
 @looped("twin", [Twin(turn=0.7), Twin(mirror=True), Twin(inch=True)], ids=["turned", "mirrored", "inch"])
 def test_so_do_their_twins_with_the_drawing_of_the_twin(seed: int, twin: Twin) -> None:
@@ -207,7 +207,7 @@ def test_a_part_agrees_within_the_tolerance_that_is_given() -> None:
         assert len(findings) == count
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_lengths_are_in_the_units_of_the_program_unless_the_file_says_others() -> None:
     text = program(polygon(6, 12.7), scale=25.4)
     for job, agrees in (({}, True), ({"units": "mm"}, False)):
@@ -264,7 +264,7 @@ def test_a_boss_is_no_pocket() -> None:
     assert [one.agrees for one in comparisons(pocket, 3, {"part": [part]})] == [True]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_roughing_is_no_difference_and_a_cut_too_deep_is() -> None:
     rough, final = program(polygon(4, 20.5), z=-3.0), program(polygon(4, 20.0), z=-3.0)
     part = {"shape": "square", "across_flats": 40.0}
@@ -276,7 +276,7 @@ def test_roughing_is_no_difference_and_a_cut_too_deep_is() -> None:
     assert [(one.section, one.differs) for one in comparisons(deep, 3, second)] == [(1, False)]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(("apothem", "told"), [(14.0, []), (13.0, [True])])
 def test_what_a_contour_of_unknown_r_may_take_off_is_no_difference(apothem: float, told: list[bool]) -> None:
     # Of the tool that finishes nobody has said R; what is cut too deep by the first one stays so.
@@ -368,7 +368,7 @@ def test_circles_off_the_center() -> None:
 # ---- from the file to the report ----
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(("code", "across", "within"), [("G21", 40.0, "0.001 mm"), ("G20", 2.0, "0.0001 inch")])
 def test_nothing_agrees_by_less_than_the_last_digit(code: str, across: float, within: str) -> None:
     words = [f"X{across}", f"C{across / 2}", f"X-{across}", f"C-{across / 2}", f"X{across}", "C0."]
@@ -428,7 +428,7 @@ def test_the_page_shows_what_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyP
     assert lines[at : at + len(said)] == said
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_a_job_file_names_drawings_of_some_programs(tmp_path: Path) -> None:
     """Those of other programs are not read; a drawing lies beside its job file, whose line is told for a broken one."""
     for name in ("O1.NC", "O2.NC"):
@@ -457,7 +457,7 @@ def test_a_job_file_names_drawings_of_some_programs(tmp_path: Path) -> None:
     assert checked("O2.NC").exit_code == 0
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_a_contour_that_does_not_close_leaves_metal() -> None:
     """It ends 0.05 mm beside where it began."""
     open_square = HEAD + "G1 X100. C-4. F500\nZ-1.\nG42 X40. C0\nC20.\nX-40.\nC-20.\nX40.1\nC0\nG40 X80. C5.\n" + TAIL
@@ -474,7 +474,7 @@ def test_a_depth_that_nothing_reaches_differs() -> None:
     assert "nothing mills its walls" in found.message or "too much stays" in found.message
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(("half", "by", "what"), [(10.05, 0.071, "stays"), (9.95, 0.05, "is cut away")])
 def test_a_boss_that_the_path_of_the_tool_makes_is_compared_as_a_boss(half: float, by: float, what: str) -> None:
     """No contour in offset mode says on which side of the drawn square the part is: what is cleared does."""
@@ -538,7 +538,7 @@ WITH_ISLAND = {
 }
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("fault", WITH_ISLAND, one_in=18)
 @looped("turn", [1, 1j], ids=["along X", "along C"])
 def test_an_island_hides_no_fault_of_another_pocket(fault: str, turn: complex) -> None:
@@ -562,7 +562,7 @@ POCKET = [complex(x, c) for x, c in ((4, 4), (-4, 4), (-4, -4), (4, -4))]
 BOSS = [complex(x, c) for x, c in ((15, -8), (15, 2), (3, 2), (3, 9), (-15, 9), (-15, -8))]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("scale", [1.0, 25.4], ids=["mm", "inch"], one_in=10)
 @looped(
     ("drawn_radius", "radius", "agrees"), [(2, 2, True), (2, 1.5, False), (3, 2, False), (0, 2, True), (1, 2, True)]
@@ -607,7 +607,7 @@ def test_a_slot_is_placed_by_its_own_depth_not_by_a_deeper_groove() -> None:
     assert report_of(text.replace(slot(0, 2, -6.0), ""), "fanuc-30i", "1:radius=4", job=job, only=[RULE]).findings == []
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(("z", "is_compared"), [("-3.015625", True), ("-3.016", False), ("-2.984375", True)], one_in=2)
 def test_a_depth_belongs_to_a_part_up_to_its_tolerance(z: str, is_compared: bool) -> None:
     text = program(polygon(6, 13.5)).replace("Z-3.0000", f"Z{z}")
@@ -615,7 +615,7 @@ def test_a_depth_belongs_to_a_part_up_to_its_tolerance(z: str, is_compared: bool
     assert [one.contour is not None for one in comparisons(text, 4, {"part": [part]})] == [is_compared]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("seed", [1, 10])
 def test_the_bar_of_the_job_bounds_what_is_compared(seed: int) -> None:
     """Flats, slots and keyways that end beyond it."""

@@ -215,7 +215,7 @@ def grid(space: Any) -> None:
 
 
 @pytest.mark.one_in(5)
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.parametrize(
     ("draw", "said"),
     [

@@ -135,7 +135,7 @@ def test_gaps_narrower_than_what_is_tried_of_the_part_are_left_out(tmp_path: Pat
             assert finding.values["largest"] == pytest.approx(0.04, abs=0.003)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_two_flats_drawn_as_lines_are_judged_as_areas(tmp_path: Path) -> None:
     flat = "G12.1\nG1 G98 C-30. F500\nG42 X{size} C-25. F200\nZ-5.\nC25.\nG40 X60. C30.\nZ2.\nG13.1\n"
     lines = [(12 - 9j, 12 + 9j), (-12 + 9j, -12 - 9j)]

@@ -61,7 +61,7 @@ def test_a_closed_polyline_may_repeat_its_first_vertex(tmp_path: Path, version: 
     assert curve.tolist() == [complex(*corner) for corner in [*SQUARE, SQUARE[0]]]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(("major", "ratio"), [("1e-9", "1e-6"), ("0.0", "1.0"), ("7.25", "0.0"), ("7.25", "1e-9")])
 def test_an_ellipse_with_an_axis_of_no_length_is_named(tmp_path: Path, major: str, ratio: str) -> None:
     path = written(tmp_path / "a.dxf", lambda space: (circle(space), space.add_ellipse((5, 0), (7.25, 0), 0.625)))
@@ -196,7 +196,7 @@ def test_units_of_no_part_are_named(tmp_path: Path, units: int, message: str) ->
     assert message in str(refused.value)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("begin", [0.3, 1.0, -math.pi, math.pi, 5.0])
 @looped("turns", [1, -1, 0])
 def test_an_ellipse_that_ends_where_it_begins_is_whole(tmp_path: Path, begin: float, turns: int) -> None:
@@ -216,7 +216,7 @@ def test_a_part_of_an_ellipse_ends_where_it_is_said(tmp_path: Path) -> None:
     assert length(curve) == pytest.approx(1e-2 * math.hypot(20 * math.sin(0.305), 15 * math.cos(0.305)), rel=1e-3)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("repeated", [(0,), (5,), (12,), (3, 4), (5, 5), (0, 12)])
 def test_a_point_of_a_spline_may_be_given_twice(tmp_path: Path, repeated: tuple[int, ...]) -> None:
     points = [(20 * math.cos(turn * math.pi / 6), 15 * math.sin(turn * math.pi / 6)) for turn in range(13)]

@@ -115,14 +115,14 @@ def test_a_share_of_a_circle_is_no_circle(name: str, stock: float | None, text: 
     assert outcome(report(text, CIRCLES[name], stock)) != "pass"
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("name", ["circle", "four splines", "ripple 0.015"])
 def test_nor_is_it_on_a_bar_of_that_size(name: str) -> None:
     for text in (HALF, BIT):
         assert "of the round of a.dxf a part is milled" in outcome(report(text, CIRCLES[name], 40.0))
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("name", [name for name in CIRCLES if name != "two splines"], one_in=3)
 @looped("stock", [None, 50.0])
 def test_a_whole_circle_agrees_with_what_is_nearly_one(name: str, stock: float | None) -> None:
@@ -161,7 +161,7 @@ def test_a_round_that_no_cut_touches_is_turned(text: str, stock: float | None, a
     assert "is not milled" in told
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(("stock", "expected"), [(None, "a part is milled"), (40.0, "a part is milled"), (50.0, "error")])
 def test_an_arc_between_two_walls_is_milled_whole(stock: float | None, expected: str) -> None:
     assert expected in outcome(report(WITH_SHARE, flats(15, 20), stock))

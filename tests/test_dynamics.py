@@ -89,7 +89,7 @@ def test_moves_agree_with_dense_sampling(program: str, radius: int) -> None:
 points = st.tuples(coordinates, coordinates).map(lambda pair: complex(*pair))
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @settings(max_examples=20, deadline=None)
 @given(points, points, st.floats(-2, 2), st.sampled_from([Motion.LINE, Motion.CW, Motion.CCW]), st.floats(0.1, 0.95))
 def test_override_agrees_with_dense_sampling(

@@ -135,7 +135,7 @@ def pocket(length: float, width: float, radius: float = 6.0) -> Loop:
     return rectangle(length, width, radius, inside=True)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.one_in(3)
 @pytest.mark.parametrize(
     ("rough", "finish", "c", "loss"),
@@ -154,14 +154,14 @@ def test_a_wall_that_is_gone_is_told(rough: Loop, finish: Loop, c: float, loss: 
     assert losses(milled(1, rough), milled(2, finish, c)) == [pytest.approx(loss, abs=0.005)]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_a_contour_of_another_shape_in_what_is_cleared_is_told() -> None:
     hexagon = section(1, 6, 24.0)
     assert losses(hexagon, milled(2, circle(28))) == [pytest.approx(14 - 12 / math.cos(math.pi / 6), abs=0.005)]
     assert losses(hexagon, milled(2, circle(28), z=-6.8)) == []
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_an_eccentric_contour_at_another_c_is_told() -> None:
     """Its points turn about X0: one that lies 14 mm off it by 14 * 5 deg, of which 0.2 mm were left."""
     loss = 2 * 8 * math.sin(math.radians(2.5)) - 0.2

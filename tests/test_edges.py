@@ -246,7 +246,7 @@ def test_d_is_no_fault_where_it_calls_an_edge() -> None:
     ]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("calls", ["T8 D0", "T8 D1\nD0", "T0", 'T="MILL_8" D0'], one_in=3)
 def test_without_an_edge_compensation_has_no_radius(calls: str) -> None:
     assert [rule for _, rule in said(report_of(face(calls), "siemens-transmit"))] == ["offset-number-missing"]
@@ -290,7 +290,7 @@ def test_many_edges_take_no_time_that_grows_with_their_square() -> None:
     assert trace.offsets.radius_of_offset[-1] == 4.0
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("word", ["D123456", "D1.5.2", "D", "D-1", "T99999999999999999 D1", "D" + "9" * 400])
 def test_strange_words_call_nothing_that_is_known(word: str) -> None:
     found = report_of(face(f"T8 {word}" if word[0] == "D" else word), "siemens-transmit", "8/3:radius=4")

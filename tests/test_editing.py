@@ -21,7 +21,7 @@ pytestmark = pytest.mark.usefixtures("own_folder")
 ONLY_RAPID = ("--select", "rapid-in-polar,start-up-shorter-than-radius,wrong-dash")
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_all_that_an_editor_asks_is_answered() -> None:
     with Editor(*ONLY_RAPID, "--machine", "fanuc-30i") as editor:
         program = editor.open("O1.NC", RAPID + "GOTO10\nN10 M30\n")

@@ -80,6 +80,7 @@ def hints(text: str, what: str, shown: types.Range = WHOLE, **asked: object) -> 
     return [(one.position.line + 1, str(one.label), str(one.tooltip)) for one in found]
 
 
+@pytest.mark.nightly
 def test_hints_are_angle_or_highest_feed_of_blocks_in_the_mode() -> None:
     options = {"tools": ["1:radius=4"], "changes": ["limits.c_feed=3600"]}
     angles = hints(COMPENSATED, "c_angle", **options)

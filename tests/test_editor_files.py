@@ -127,6 +127,7 @@ def test_a_state_that_tells_nothing_is_compared_by_content(monkeypatch: pytest.M
 MAIN = RAPID.replace("G0 C5.", "M98 P77")
 
 
+@pytest.mark.nightly
 def test_an_unsaved_subprogram_counts_for_its_callers() -> None:
     Path("sub").mkdir()
     Path("sub/O77.NC").write_text("O77\nG1 C5.\nM99\n", "utf-8")
@@ -179,6 +180,7 @@ def test_settings_count_as_they_are_saved() -> None:
 TWO = "O1\nN10 G0 X60.\nM98 P2\nGOTO10\nM30\nO2\nG12.1\nG0 C5.\nG13.1\nM99\n"
 
 
+@pytest.mark.nightly
 @looped("was_good", [True, False])
 def test_with_broken_settings_what_needs_none_still_works(was_good: bool) -> None:
     job = Path("polarcheck.toml")
@@ -205,6 +207,7 @@ def test_with_broken_settings_what_needs_none_still_works(was_good: bool) -> Non
         assert editor.marks(job.absolute().as_uri()) == []
 
 
+@pytest.mark.nightly
 @looped(
     ("job", "options"),
     [

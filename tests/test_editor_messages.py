@@ -180,6 +180,7 @@ def test_what_breaks_off_or_never_begins_ends_the_session() -> None:
         answers(b"G12.1\n" * 5000)
 
 
+@pytest.mark.nightly
 def test_a_request_can_be_cancelled() -> None:
     Path("polarcheck.toml").write_text("", "utf-8")
     with Editor() as editor:

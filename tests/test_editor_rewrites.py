@@ -86,6 +86,7 @@ def test_what_is_no_plain_word_is_left_alone(machine: str, text: str) -> None:
     assert format_text(text, machine) == text
 
 
+@pytest.mark.nightly
 @settings(max_examples=60, deadline=None)
 @given(
     st.lists(

@@ -225,7 +225,7 @@ def respelled(program: str, hand: Hand) -> str:
     return "\r\n".join(lines)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.one_in(20)
 @every_machine
 @given(part=parts, radius=st.integers(1, 9))
@@ -238,7 +238,7 @@ def test_spelling_changes_nothing(name: str, part: Part, radius: int) -> None:
     assert (findings, verdict) == (same, other)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.one_in(20)
 @every_machine
 @given(part=parts, radius=st.integers(1, 9))
@@ -260,7 +260,7 @@ def test_twins_have_the_same_path(name: str, part: Part, radius: int) -> None:
         assert (findings, verdict) == (same, result), options
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.one_in(5)
 @pytest.mark.parametrize("name", sorted(name for name, hand in HANDS.items() if hand.turns))
 @given(part=parts, radius=st.integers(1, 9), angle=st.integers(-179, 180))
@@ -320,7 +320,7 @@ def test_radius_zero_gives_the_programmed_path(name: str, part: Part) -> None:
     np.testing.assert_allclose(tables["moves"].end, programmed.end[programmed.length > 1e-9], atol=1e-9)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.one_in(20)
 @every_machine
 @given(part=parts, radius=st.integers(1, 9), limit=st.floats(100, 5000), more=st.floats(1, 9))
@@ -349,7 +349,7 @@ def test_splitting_a_move_changes_no_finding(name: str, part: Part, radius: int)
     np.testing.assert_allclose(np.nansum(theirs.time), np.nansum(ours.time), rtol=1e-9)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @every_machine
 @looped("radius", [9.5, 12.0, 20.0], one_in=20)
 def test_a_cutter_too_large_for_a_pocket_is_found(name: str, radius: float) -> None:

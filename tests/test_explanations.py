@@ -75,7 +75,7 @@ def as_it_is(lines: list[str]) -> list[str]:
     return lines
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("turn", "slip"), [*((as_it_is, slip) for slip in SLIPS), *((mirrored, slip) for slip in OF_ONE_AXIS)], one_in=3
 )
@@ -89,7 +89,7 @@ def test_one_finding_in_the_block_says_what_to_write(turn: Turn, slip: Slip) -> 
     assert meant in finding.message
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(("first", "second"), [(SLIPS[1], SLIPS[7]), (SLIPS[3], SLIPS[8])])
 def test_mistakes_in_two_contours_are_two_findings(first: Slip, second: Slip) -> None:
     slipped = [[wrong if line == right else line for line in contour] for contour, right, wrong, _ in (first, second)]
@@ -117,7 +117,7 @@ CHAMFERED = [
 ]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("contour", "right", "wrong", "words"),
     [
@@ -138,7 +138,7 @@ def test_what_no_rule_objects_to_is_told_where_the_rest_shows_it(
     assert abs(found[0].line - text[: text.index("\n" + right[0])].count("\n") - 2) <= 1
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("right", "wrong"),
     [("G42 X36. C0 F200", "G42 X3.6 C0 F200"), ("G42 X36. C0 F200", "G42 X46. C0 F200"), ("C0", "X44. C0")],
@@ -166,7 +166,7 @@ MEANT = [
 ]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(("section", "rule"), MEANT)
 def test_no_value_is_named_where_nothing_shows_it(section: str, rule: str) -> None:
     text = "T0101\n" + section.replace("/", "\n") + "\nM30\n"
@@ -181,7 +181,7 @@ def test_a_rule_that_is_not_run_explains_nothing() -> None:
     assert finding.message.endswith("difference is allowed")
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("contour", "right", "wrong", "line", "words"),
     [
@@ -208,7 +208,7 @@ def test_a_block_elsewhere_is_named_where_all_findings_come_from_it(
     assert finding.line == line
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("contour", "right", "wrong", "words"),
     [
@@ -240,7 +240,7 @@ PASSES = [*HEAD, *ROUNDED, "G40 X50. F1500", "Z2.", "Z-8. F300", *ROUNDED, *TAIL
 BARE = [*HEAD[:-1], "X46. C0", HEAD[-1], "X40. F200", *ROUNDED[1:], "X46. F1500", *TAIL[1:]]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("lines", "right", "wrong", "rule", "words"),
     [
@@ -294,7 +294,7 @@ def test_a_ramp_that_leaves_a_pocket_is_wrong_and_not_its_approach() -> None:
     ]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_g91_that_g90_takes_back_is_missing() -> None:
     of_system_b = [line.replace("U", "X").replace("H", "C") for line in STEPS[2:]]
     sound = [*HEAD, "G42 X40. F200", "G91 C7.", *of_system_b, "G40 G90 X60. F1500", *TAIL[1:]]
@@ -342,7 +342,7 @@ TEETH = [
 ]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("contour", "right", "wrong", "words"),
     [
@@ -578,7 +578,7 @@ SMALL = [
 ]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("contour", "right", "wrong", "word"),
     [
@@ -628,7 +628,7 @@ def told_of_small_cutter(text: str) -> list[tuple[str, int]]:
     return [(finding.message, finding.line) for finding in findings if finding.severity != "note"]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("contour", "rights", "wrongs", "words"),
     [

@@ -432,7 +432,7 @@ def test_names_of_any_bytes_are_checked_and_shown_apart(locale: str) -> None:
     assert checked(ended.stdout) == [shown for _, shown in sorted(zip(NAMES, SHOWN, strict=True))]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @of_linux
 def test_names_of_any_bytes_are_checked_where_they_are_given() -> None:
     for name in NAMES:
@@ -454,7 +454,7 @@ def test_no_two_paths_are_shown_as_one() -> None:
     assert all(text.isprintable() for text in seen.values())
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("name", ["a\0b.nc", "f\0/b.nc", "\0", "a\ud800.nc" if sys.platform != "win32" else "\0"])
 def test_names_that_no_file_can_have(name: str) -> None:
     with pytest.raises(SourceError, match="no file can have this name"):

@@ -382,6 +382,7 @@ def test_a_file_that_needs_more_memory_than_there_is_costs_itself_only() -> None
     ]
 
 
+@pytest.mark.nightly
 def test_no_table_of_a_file_outlives_the_next() -> None:
     told: list[str] = []
     (task,) = batch.plan(["a.nc"], OfPrograms(Options()), (), told.append, told.append)

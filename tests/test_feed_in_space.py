@@ -177,7 +177,7 @@ def test_trace_and_curve_show_f_and_what_it_leaves() -> None:
     assert curve.c_feed[on_helix].max() == pytest.approx(helix.c_feed, rel=1e-3)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("before", "between", "in_space"),
     [

@@ -98,7 +98,7 @@ def test_at_the_limit_itself_f_is_lowered() -> None:
     assert row_of(program, 6, changes={"limits": override}).highest == 100
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_f_is_rounded_as_messages_do() -> None:
     for feed, points in ((500, ""), (500, "."), (40, ""), (7.5, ""), (0.3, "")):
         for c_feed in (3600, 777, 91, 7.3):

@@ -19,7 +19,7 @@ ROW = st.tuples(
 )
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @given(st.lists(ROW, max_size=12))
 def test_positions_are_those_of_a_loop(rows: list[tuple[float, float, bool, float]]) -> None:
     expected, here = [], math.nan
@@ -41,7 +41,7 @@ def test_positions_are_those_of_a_loop(rows: list[tuple[float, float, bool, floa
     np.testing.assert_allclose(found, np.array(expected, float), rtol=1e-12, atol=1e-12)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @given(st.lists(st.tuples(st.integers(0, 9), st.booleans()), max_size=12))
 def test_what_is_in_force_is_the_last_that_was_written(rows: list[tuple[int, bool]]) -> None:
     expected, here = [], -1

@@ -99,7 +99,7 @@ def test_nor_do_they_when_they_are_turned(name: str, turn: float) -> None:
     assert errors(whole(blocks, turn=turn), radius) == []
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("name", [name for name in SOUND if "flats" not in name], one_in=3)
 def test_a_ramp_from_the_other_side_cuts_the_part(name: str) -> None:
     blocks, radius = SOUND[name]

@@ -134,7 +134,7 @@ def test_z_is_held_along_a_helix_and_a_change_of_its_slope_ends_an_element() -> 
     assert len(curves) == 2
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("seed", range(3), one_in=3)
 def test_random_contours_are_passed_within_the_tolerance(seed: int) -> None:
     random = np.random.default_rng(seed)

@@ -987,7 +987,7 @@ def test_a_forgotten_radius_is_a_note() -> None:
     assert [(found.rule, found.severity) for found in report.findings] == [("radius-from-comment", "note")]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("case", BROKEN, ids=name, one_in=96)
 def test_broken_statement(case: Case) -> None:
     """The finding that the document speaks of, and no other."""
@@ -999,7 +999,7 @@ def test_broken_statement(case: Case) -> None:
     assert (severities == {"note"}) == (case.number in NOTES)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("case", KEPT, ids=name, one_in=36)
 def test_kept_statement(case: Case) -> None:
     assert [(one.line, one.rule) for one in beyond_its_notes(case)] == []

@@ -75,7 +75,7 @@ def text_of(name: str) -> str:
 # ---- the command ----
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_nothing_is_written_unless_it_is_asked_for() -> None:
     make(a__nc=BOTH)
     for asked in ((), ("--diff",), ("--diff", "--unsafe-fixes"), ("--unsafe-fixes",), ("--backup",)):
@@ -146,7 +146,7 @@ def test_fixes_are_written_and_the_result_is_checked() -> None:
     assert check("a.nc", "--fix").stdout.endswith("; no findings\n")
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_the_exit_code_is_that_of_the_result() -> None:
     make(a__nc=BOTH)
     result = check("a.nc", "--fix")
@@ -158,7 +158,7 @@ def test_the_exit_code_is_that_of_the_result() -> None:
     assert text_of("a.nc") == CLOSED.replace("C10", "C-10")
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_rules_are_chosen_as_for_the_check() -> None:
     make(a__nc=BOTH, b__nc=BOTH)
     check("a.nc", "--fix", "--unsafe-fixes", "--select", "polar-never-left")
@@ -175,7 +175,7 @@ def test_quiet_tells_only_what_is_left() -> None:
     assert text_of("a.nc") == BOTH.replace("–", "-")
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_of_many_fixes_some_are_told_one_by_one() -> None:
     lines = "".join(f"(A{number})\nG12.1 M8\nG1 X40. F200\nX60.\nG13.1\nG0 Z50.\n" for number in range(25))
     make(a__nc="G98 G0 X60. C0\n" + lines)
@@ -185,7 +185,7 @@ def test_of_many_fixes_some_are_told_one_by_one() -> None:
     assert "polarcheck: a.nc:9: fixed: " in result.stderr, "the lines of the file as it was"
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_several_files_are_fixed_each_for_itself() -> None:
     make(a__nc=DASH, b__nc=MINUS, c__nc=DASH)
     result = check(".", "--diff")
@@ -194,7 +194,7 @@ def test_several_files_are_fixed_each_for_itself() -> None:
     assert check(".", "--fix").stdout.endswith(", 2 fixed\n")
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_the_command_that_a_report_names_fixes_nothing() -> None:
     make(**{f"{name}__nc": OPEN for name in "abcd"})
     assert "in full: polarcheck check a.nc\n" in check(".", "--fix", "--backup").stdout
@@ -304,7 +304,7 @@ def test_what_somebody_has_answered_for_is_not_fixed() -> None:
     assert (found.data, found.fixed, found.refused) == (DASH.encode(), [], [])
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_what_a_baseline_knows_is_not_fixed() -> None:
     make(a__nc=DASH, b__nc=DASH)
     assert CliRunner().invoke(main, ["baseline", "create", "a.nc", "-o", "known.json"]).exit_code == 0
@@ -363,7 +363,7 @@ def test_a_fix_that_does_more_than_it_says_is_not_made(wrong: str, said: str, mo
     assert refused.reason.startswith(said)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_one_fix_that_is_refused_does_not_stop_the_others() -> None:
     two = "O1\n" + REFUSED + "O2\n" + BOTH
     found = outcome(two)
@@ -380,7 +380,7 @@ def test_fixes_that_touch_each_other_come_one_after_the_other() -> None:
     assert len(found.fixed) == 2
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_the_fixes_of_one_round_after_another_end() -> None:
     program = HEAD + "".join(f"G17 C–{number}0.\n" for number in range(1, 4)) + "X60.\nG13.1\n"
     found = outcome(program)
@@ -498,7 +498,7 @@ def texts_with_edits(draw: st.DrawFn) -> tuple[str, list[tuple[int, int, str]]]:
     return text, [(start, end, draw(st.text("AB-.\n", max_size=4))) for start, end in pieces]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @given(texts_with_edits(), st.sampled_from(["utf-8", "utf-16-le", "utf-8-sig"]))
 def test_only_the_named_characters_change(case: tuple[str, list[tuple[int, int, str]]], encoding: str) -> None:
     text, spans = case
@@ -512,7 +512,7 @@ def test_only_the_named_characters_change(case: tuple[str, list[tuple[int, int, 
     assert found.decode(encoding) == source.read_source(wanted.encode(encoding), encoding=encoding).text
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @given(texts_with_edits())
 def test_lines_lead_back_to_where_they_come_from(case: tuple[str, list[tuple[int, int, str]]]) -> None:
     text, spans = case
@@ -533,7 +533,7 @@ def test_lines_lead_back_to_where_they_come_from(case: tuple[str, list[tuple[int
 # ---- the file ----
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_the_old_program_is_kept_where_that_is_asked_for() -> None:
     make(a__nc=BOTH)
     check("a.nc", "--fix", "--backup")
@@ -547,7 +547,7 @@ def test_the_old_program_is_kept_where_that_is_asked_for() -> None:
     assert check("a.nc", "--fix", "--backup").exit_code == 1, "the same is kept already"
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_a_program_that_was_kept_is_no_program_of_its_folder() -> None:
     make(O0001=DASH)
     check(".", "--fix", "--backup")
@@ -804,7 +804,7 @@ def test_the_example_of_the_page_is_as_it_is_shown() -> None:
     assert result.exit_code == 1
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_the_report_names_what_unsafe_fixes_have_assumed() -> None:
     program = "O7\nT0101\nG98 G0 X60. C0 Z5.\nG12.1 M8\nG1 G41 X40 F200\nC-10.\nG40 X60.\nG0 Z50.\nM30\n"
     options = "--fix", "--unsafe-fixes", "--tool", "1:radius=4"

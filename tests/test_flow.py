@@ -203,7 +203,7 @@ def test_a_called_program_is_found_in_the_folders_only(tmp_path: Path) -> None:
     assert found.message.startswith("in 1234.NC, line 4, G0 C5.")
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_a_loop_counts_a_finding_and_shows_its_worst_run() -> None:
     loop = "WHILE[#1 LT 5]DO1\n#1=#1+1\nX[20.-4*#1] F2000\nC[#1]\nC0\nEND1\n"
     program = HEAD + f"#1=0\nG12.1\nG1 X60. F1500\n{loop}X60.\nG13.1\nM30\n"

@@ -80,7 +80,7 @@ def test_the_center_of_an_arc_turns_with_the_frame() -> None:
     assert np.allclose(abs(trace.path.end[trace.path.is_arc] - centers), 10)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @settings(max_examples=25, deadline=None)
 @given(
     st.lists(st.tuples(st.integers(-30, 30), st.integers(-30, 30)), min_size=1, max_size=8),
@@ -245,7 +245,7 @@ def test_z_is_shifted_too() -> None:
     assert trace.path.z.tolist() == [10, 10, 6, 6, 7, 7, 7, 3]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_many_frames_are_followed_one_after_the_other() -> None:
     body = "".join(f"AROT RPL=90\nG91 X{number % 7} Y1\n" for number in range(20_000))
     trace = trace_of(face("G1 X20 Y10 F200\n" + body + "G90\n"), MACHINE)
@@ -291,7 +291,7 @@ N230 M30
 """
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("offsets", [(), ("1:radius=2", "2:radius=2"), ("1:radius=1.5", "2:radius=1")])
 def test_the_example_of_a_shop_has_no_fault(offsets: tuple[str, ...]) -> None:
     """Without DIAMON and DIAMOF its X20 is what the machine data say: here 20 from the center, as in the mode."""

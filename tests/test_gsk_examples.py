@@ -88,7 +88,7 @@ BOTH = [
 ]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("program", [SINGLE, CYCLE], ids=["single", "cycle"], one_in=36)
 @looped(("right", "wrong", "number", "rule"), BOTH)
 def test_a_wrong_twin_gives_the_one_finding(program: str, right: str, wrong: str, number: str, rule: str) -> None:
@@ -106,7 +106,7 @@ def test_the_alarm_text_of_a_switch_in_offset_mode_is_that_of_the_control() -> N
     assert found.alarm == "polar interpolation command in tool nose radius compensation"
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("right", "wrong"),
     [
@@ -126,7 +126,7 @@ def test_with_an_infeed_the_contour_must_be_closed(right: str, wrong: str, infee
         assert "contour-open-with-infeed" not in rules
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(("program", "limit", "line"), [(SINGLE, 100, "N130"), (CYCLE, 500, "N150")])
 def test_near_the_center_the_rate_of_c_is_an_alarm(program: str, limit: float, line: str) -> None:
     """Note 1: F200 at 45 mm turns C with 255 deg/min, F2000 at 125 mm with 917."""
@@ -135,7 +135,7 @@ def test_near_the_center_the_rate_of_c_is_an_alarm(program: str, limit: float, l
     assert judged(program, limits={"c_feed": float(np.degrees(rate)) + 0.01}) == []
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("words", "rule"),
     [
@@ -198,7 +198,7 @@ def test_the_place_of_g12_1_is_angle_0() -> None:
     assert turned.c_feed == pytest.approx(moves.c_feed)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("plane", ["G17", "G18", "G19", ""])
 def test_the_plane_of_before_is_dropped_and_comes_back(plane: str) -> None:
     """Arcs of the mode lie on the polar plane whatever was selected, and one of Z and X after it in that of before."""

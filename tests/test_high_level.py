@@ -216,7 +216,7 @@ FRAMES = {
 }
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("blocks", FRAMES)
 def test_frames_are_told_by_their_names_where_the_profile_has_no_words_for_them(blocks: str) -> None:
     assert any(entry.startswith(FRAMES[blocks]) for entry in told(f"{blocks} / M30", ISO))
@@ -313,7 +313,7 @@ def test_a_called_program_may_lie_in_a_folder(tmp_path: Path) -> None:
 # ---- faults ----
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("blocks", "expected"),
     [
@@ -524,7 +524,7 @@ M30
 """
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(("machine", "text"), [(OWN, TWIN_OWN), (ISO, TWIN_ISO)])
 @looped("radius", [0, 4])
 def test_a_program_and_its_twin_have_one_path(machine: str, text: str, radius: int) -> None:

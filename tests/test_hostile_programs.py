@@ -44,7 +44,7 @@ def test_computed_numbers_without_measure_are_unknown(value: str, letters: str) 
         assert not any("inf" in found.message.split() for found in every(report))
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("digits", [10, 16, 23, 150, 400], one_in=24)
 @looped("word", ["X", "C-", "U", "H", "Z", "I", "R", "G3 X40. C30. R", "G3 C30. I", "F", "G", "T", "N"])
 def test_written_numbers_without_measure_have_one_cause(word: str, digits: int) -> None:
@@ -54,7 +54,7 @@ def test_written_numbers_without_measure_have_one_cause(word: str, digits: int) 
     assert not any("inf" in found.message.split() for found in every(report))
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("word", ["X-#1", "X#1", "U-#1"])
 def test_a_position_without_measure_is_not_told_as_a_number(word: str) -> None:
     program = f"O1\nG20 G98 G18\nT0101\n#1=POW[10,308]\nG0 {word} C0 Z2.\nG12.1\nG1 X1. C1. F100\nC-1.\nG13.1\nM30\n"
@@ -141,7 +141,7 @@ def test_a_file_in_another_language_has_a_place() -> None:
     assert (found.rule, found.line, found.column, found.end_column) == ("other-dialect", 1, 1, 7)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("slash", ["/C0. F200", "C0. F200", "/C0", "/2 C0"], one_in=3)
 def test_block_skip_tells_nothing_twice(slash: str) -> None:
     """What stands alone with block skip off may follow from something else with it on."""
@@ -237,7 +237,7 @@ G1 G40 X129. C0."""
 FANUC = next(n for n, setup in enumerate(SETUPS) if (setup.machine, setup.tools[:1]) == ("fanuc", ("1:radius=5",)))
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("seed", [None, 368, *range(10)], one_in=12)
 def test_contours_at_several_depths_end_in_a_report(seed: int | None) -> None:
     data = DEPTHS.encode() if seed is None else deep_contours.program(Random(seed))  # noqa: S311

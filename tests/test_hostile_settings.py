@@ -346,7 +346,7 @@ def test_a_machine_with_values_that_nobody_means(text: str, told: str) -> None:
     assert told in error
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     "changes",
     [

@@ -42,7 +42,7 @@ def test_the_other_unit_is_one_finding(program: str, head: str, job: dict[str, A
     assert findings(program, head, "fanuc-30i", job) == [(2, said)]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("job", [IN_MM, IN_INCH, NO_BAR, {**IN_MM, "stock": {"diameter": 200}}])
 def test_sound_programs_in_both_units(job: dict[str, Any]) -> None:
     assert findings(INCH, "G20 G98 G40", "fanuc-30i", job) == []

@@ -97,7 +97,7 @@ def agrees(path: Path, *options: object) -> None:
     assert max(one["largest"] for one in file["compared"]) <= 0.01
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_lengths_are_in_the_units_of_the_job_file_or_of_the_program(tmp_path: Path) -> None:
     path = tmp_path / "O1.NC"
     path.write_text(program(polygon(6, 12.7), scale=25.4))
@@ -131,7 +131,7 @@ def test_the_bar_bounds_flats_and_cuts_corners_off(tmp_path: Path) -> None:
         agrees(path, "--tool", "1:radius=10")
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_each_section_has_its_entry_and_each_file_its_name(tmp_path: Path) -> None:
     first, second = program(polygon(6, 13.5)), program(polygon(4, 20.0), z=-8.0)
     both = first.replace(TAIL, "G13.1\n") + second.removeprefix("O1\n")
@@ -159,7 +159,7 @@ def indexed(angles: list[float]) -> str:
     return head + "".join(f"G0 X160. C{angle:g}\nG12.1\n{blocks}\nG13.1\n" for angle in angles) + end
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.one_in(12)
 @pytest.mark.parametrize(
     ("angles", "expected"),
@@ -188,7 +188,7 @@ def test_sections_that_make_one_shape_have_one_entry(
         assert run("check", path, *options, "--select", "part-differs-from-drawing").exit_code == (1 if other else 0)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_where_c_is_not_known_the_angle_is_left_out(tmp_path: Path) -> None:
     path = tmp_path / "O1.NC"
     path.write_text(program(polygon(6, 13.5)).replace("Z2. C0", "Z2. C#500"))
@@ -232,7 +232,7 @@ def test_beside_what_no_part_says_an_entry_is_a_comment(tmp_path: Path) -> None:
 # ---- the command ----
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_it_writes_no_file_and_is_appended(tmp_path: Path) -> None:
     path = tmp_path / "O1.NC"
     path.write_text(program(polygon(6, 13.5)))

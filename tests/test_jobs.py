@@ -149,6 +149,7 @@ def test_several_processes_say_what_one_says(archive: Path, tmp_path: Path, monk
     assert reports["3"] == reports["1"]
 
 
+@pytest.mark.nightly
 def test_processes_that_are_spawned_get_all_they_need() -> None:
     make(5)
     Path("f/polarcheck.toml").write_text('machine = "haas-lathe"\n[tools.8]\nradius = 4.0\n')

@@ -76,7 +76,7 @@ SOUND = "G40 X110.\n"
 # ---- what grows ----
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_a_feed_that_grows_is_told_again_with_what_is_known_of_it() -> None:
     create(a=near_center("400."))
     assert told() == []
@@ -88,7 +88,7 @@ def test_a_feed_that_grows_is_told_again_with_what_is_known_of_it() -> None:
     assert line.endswith("[c-feed-above-limit]")
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.one_in(3)
 @pytest.mark.parametrize(
     ("old", "new", "said"),
@@ -143,7 +143,7 @@ def test_what_is_worse_is_neither_new_nor_gone_and_an_update_takes_it() -> None:
     assert told() == []
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_a_finding_that_follows_may_not_grow_under_its_cause() -> None:
     """The numbers of findings that follow are known under their rule."""
     create(a=near_center("400."))
@@ -211,7 +211,7 @@ def test_what_is_edited_elsewhere_keeps_what_is_known(edit: Any, name: str) -> N
     assert told() == []
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_where_the_first_block_of_a_section_is_mended_the_others_stay_known() -> None:
     blocks = "G0 C5.\n"
     create(a=f"O1\nG98 G0 X60. C0\nG12.1\nG1 X40. F200\n{blocks}G1 X30.\n{blocks}G1 X20.\n{blocks}G13.1\nM30\n")
@@ -220,7 +220,7 @@ def test_where_the_first_block_of_a_section_is_mended_the_others_stay_known() ->
     assert told() == []
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_a_long_program_is_known_by_a_part_of_its_blocks() -> None:
     passes = [open_ended(60 + number % 7, SOUND, f"Z-{number / 8:g}") for number in range(260)]
     create(a=program(*passes[:100], open_ended(50), *passes[100:]))
@@ -299,7 +299,7 @@ def test_a_job_file_names_the_baseline() -> None:
     assert "these programs have several baselines, more/../other.json, sub/known.json" in result.stderr
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_what_is_gone_fails_only_on_demand() -> None:
     create(a=arc("40.26"))
     options = ("check", ".", "--baseline", FILE)

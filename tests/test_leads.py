@@ -63,7 +63,7 @@ SHAPES = {
 }
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(("shape", "form"), [(shape, form) for shape in SHAPES for form in FORMS], one_in=23)
 def test_a_sound_contour_is_silent(shape: str, form: str) -> None:
     for start in range(len(SHAPES[shape])):
@@ -73,7 +73,7 @@ def test_a_sound_contour_is_silent(shape: str, form: str) -> None:
         assert found <= _OF_APPROACH, (start, form)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(("sides", "form"), [(sides, form) for sides in (6, 8, 10) for form in FORMS], one_in=17)
 def test_one_odd_corner_is_told_with_its_value(sides: int, form: str) -> None:
     """Whatever the wrong number is, and wherever the corner stands but beside the leads."""

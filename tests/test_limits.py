@@ -214,7 +214,7 @@ GROOVE = (
 )
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(("radius", "is_cut"), [(3.0, False), (3.05, True), (3.4, True)])
 def test_a_cut_of_less_than_a_millimeter_is_an_overcut(radius: float, is_cut: bool) -> None:
     report = report_of(GROOVE, "fanuc", f"1:radius={radius}", only=["overcut"])

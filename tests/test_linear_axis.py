@@ -103,7 +103,7 @@ def test_mitsubishi_names_the_linear_axis() -> None:
         assert trace.path.end[3] == pytest.approx(10 + 20j)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(("axis", "own", "other"), [("X", "IJ", "K"), ("Y", "JK", "I"), ("Z", "KI", "J")], one_in=2)
 def test_center_words_follow_the_linear_axis(axis: str, own: str, other: str) -> None:
     """I and J, J and K, K and I (B-62764EN/01 p. 51)."""

@@ -14,7 +14,7 @@ NOT_KNOWN = (
 )
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("machine", NOT_KNOWN)
 def test_where_the_limit_is_not_known_nothing_is_said(machine: str) -> None:
     assert not [one for one in report_of(FOUR, machine).findings if one.rule == RULE]

@@ -100,7 +100,7 @@ def test_what_has_an_effect_is_not(values: str) -> None:
     assert remarks(values) == []
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("values", "told"),
     [

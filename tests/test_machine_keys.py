@@ -438,7 +438,7 @@ def changed(key: str, use: Use) -> dict[str, Any]:
     return changes
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("key", USES, one_in=150)
 def test_changing_a_key_changes_a_result(key: str) -> None:
     use = USES[key]

@@ -513,7 +513,7 @@ def test_a_new_profile_can_be_read_empty_and_filled_in(name: str) -> None:
 
 
 @pytest.mark.one_in(3)
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.parametrize("name", ["fanuc-30i", "siemens-transmit", "okuma-osp"])
 def test_each_answer_of_a_new_profile_can_be_taken_alone(name: str) -> None:
     lines = new_machine.text("NL2000", name).splitlines()

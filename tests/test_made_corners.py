@@ -176,7 +176,7 @@ def compare(program: str, twin: str, *tools: str) -> None:
     assert reports[0].verdict == reports[1].verdict
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("side", ["G42", "", "G41"], one_in=5)
 @looped("elements", [SQUARE, OBLIQUE, BESIDE_ARCS, MODAL], ids=["square", "oblique", "arcs", "modal"])
 def test_the_corner_is_the_one_that_is_written_out(elements: list[Element], side: str) -> None:
@@ -237,7 +237,7 @@ _ALIKE = [
 ]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(("contour", "twin"), _ALIKE, ids=map(str, range(len(_ALIKE))), one_in=4)
 def test_a_corner_of_each_form_is_the_one_that_is_written_out(contour: str, twin: str | None) -> None:
     if twin is None:
@@ -288,7 +288,7 @@ _NOT_MADE = [
 ]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(("contour", "reason"), _NOT_MADE)
 def test_a_corner_that_is_not_known_is_not_evaluated(contour: str, reason: str) -> None:
     report = report_of(HEAD + _PLAIN.format(contour) + TAIL, MACHINE, TOOL)
@@ -303,7 +303,7 @@ def test_a_corner_that_is_not_known_is_not_evaluated(contour: str, reason: str) 
     assert all((shape.needs or "").startswith(expected) for shape in shapes)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     "contour",
     [

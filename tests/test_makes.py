@@ -66,7 +66,7 @@ def test_a_comment_that_contradicts_the_part_stands_beside_what_is_made() -> Non
     assert line_of(text) == f"{HEXAGON}, to Z-5.000"
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_the_part_that_is_asked_for_needs_areas_too() -> None:
     Path("polarcheck.toml").write_text('[[part]]\nshape = "hexagon"\nacross_flats = 32.0\n')
     Path("a.nc").write_text(program([Section(polygon(6, 30.0))]))
@@ -87,7 +87,7 @@ def test_several_sections_have_no_line() -> None:
     assert line_of(program(sections)) == ""
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("block", "written", "is_told"),
     [
@@ -125,7 +125,7 @@ def test_part_says_more_than_the_line() -> None:
     assert line_of(program([Section(polygon(6, 30.0), depths=TWICE)]), "fanuc", "--part") == ""
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_it_depends_on_the_file_alone() -> None:
     """Neither on the files before it nor on the number of processes."""
     Path("a.nc").write_text(program([Section(polygon(6, 30.0))]))

@@ -37,7 +37,7 @@ def test_a_map_gives_the_path_of_its_twin_whichever_map_ends_it(on: str, off: st
     assert not report_of(program, "hurco").findings
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("on", ["G16 XC", "G16XC", "G16  XC", "N70 G16\tXC", "g16 xc"], one_in=24)
 @looped("off", ["G18", "G17", "G19", "G16 ZC", "G18 G40", "G18 G0 X80."])
 def test_a_plane_gives_the_path_of_its_twin_whichever_plane_ends_it(on: str, off: str) -> None:

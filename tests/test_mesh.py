@@ -40,7 +40,7 @@ def test_a_mesh_is_one_finding_with_its_count(machine: str) -> None:
     assert "coarser chord tolerance" in finding.message
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(("radius", "blocks", "tool"), [(10, 4000, 1), (10, 4000, 16), (5, 1000, 5), (40, 4000, 16)], one_in=3)
 def test_of_any_size(radius: float, blocks: int, tool: float) -> None:
     [finding] = interferences(program(circle(radius, blocks), 140), f"1:radius={tool}")
@@ -48,7 +48,7 @@ def test_of_any_size(radius: float, blocks: int, tool: float) -> None:
     assert finding.severity == "error"
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_a_mesh_in_inch_and_on_the_inner_side() -> None:
     inch = HEAD.replace("G21", "G20").replace("X150. Z2.", "X6. Z.1")
     [finding] = interferences(program(circle(0.4, 4000, 4), 2.4, head=inch), "1:radius=.2")

@@ -142,7 +142,7 @@ def test_a_ramp_and_its_radius_are_told_apart() -> None:
 # ---- since when, and what leads nowhere ----
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("blocks", "said"),
     [
@@ -195,7 +195,7 @@ def test_the_virtual_axis_has_the_address_of_the_machine(machine: str, on: str, 
     )
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("machine", "on", "off", "axis"),
     [

@@ -45,7 +45,7 @@ def test_beyond_the_turned_bar_no_wall_stands(x: str, expected: dict[str, str]) 
     assert found(program, 8) == expected
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("job", [{}, bar(40), bar(60)], one_in=3)
 def test_an_index_with_the_cutter_in_a_hole_goes_through_the_part(job: dict[str, object]) -> None:
     program = f"G21 G98 G40/T0101/G97 S3000 M13/{HOLE}/{{retract}}G13.1/G0 C120./Z50./X100./M30"
@@ -68,7 +68,7 @@ def test_a_part_is_gone_through_far_from_its_center_too() -> None:
     assert found(program.format(retract=""), 2.5)["rapid-through-part"] == "error"
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_where_the_face_is_not_known_the_part_stands_up_to_its_contours() -> None:
     """The origin lies at the back: one hole is milled down to Z25, the other down to Z10."""
     center = CENTER.replace("Z2.", "Z32.").replace("Z-4.", "Z25.")
@@ -84,7 +84,7 @@ def test_of_a_mill_along_z_all_is_evaluated() -> None:
     assert ([one.rule for one in report.findings], report.not_evaluated) == (["rapid-plunge-into-stock"], [])
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_a_rapid_plunge_needs_a_bar() -> None:
     slot = "G21 G98 G40/T0101/G97 S3000 M13/G0 X24. Z2. C0/{plunge}/G12.1/G1 X10. F200/X24./Z2. F1000/G13.1/G0 Z50./M30"
     assert found(slot.format(plunge="Z-3.")) == {}
@@ -109,7 +109,7 @@ def test_what_is_milled_off_is_no_longer_in_the_way() -> None:
 # ---- the bar ----
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("turning", "diameter", "face"),
     [
@@ -149,7 +149,7 @@ def test_what_a_bar_cannot_be(stock: dict[str, object]) -> None:
         found(CONTOUR, stock=stock)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_a_pocket_is_entered_from_inside() -> None:
     """The wall of a pocket lies R farther out than the cutter center: that is not the rim of the bar."""
     pocket = "G21 G98 G40/T0101/G97 S3000 M13/G0 X24. Z2. C0/G12.1/G1 X24. F500/Z-4. F40/G41 X34. F80/G3 I-17./"
@@ -158,7 +158,7 @@ def test_a_pocket_is_entered_from_inside() -> None:
         assert found(pocket, **bar(diameter)) == {}
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("job", [{}, bar(40)])
 def test_a_cutter_on_the_far_side_of_a_wall_is_seen_whatever_the_bar(job: dict[str, object]) -> None:
     assert list(found(f"{HEAD}/G1 X60. C-25. F1500/G41 X16. F200/C25./{END}", **job)) == [
@@ -169,7 +169,7 @@ def test_a_cutter_on_the_far_side_of_a_wall_is_seen_whatever_the_bar(job: dict[s
 # ---- cuts in air ----
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("turning", ["", f"{TURNING}/G98/"])
 @looped("depth", ["", "/Z5."])
 def test_a_section_in_air(turning: str, depth: str) -> None:
@@ -193,7 +193,7 @@ def test_a_section_in_air_whose_depth_stands_before_the_mode(before: str, behind
     assert found(f"{head}/{CONTOUR}/G40 X60. F1500/G13.1/{behind}/G0 X100. Z50./M30") == rules
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_an_offset_cancel_that_crosses_the_part_is_told_once_for_all_passes() -> None:
     start = HEAD.removesuffix("/Z-5.")
     sub = f"O100/{CONTOUR}/G40 X{{}} F1500/M99"
@@ -221,7 +221,7 @@ def test_an_origin_at_the_back_is_no_air() -> None:
     assert found(f"{head}/{CONTOUR}/{END.replace('Z2.', 'Z32.')}") == {}
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_the_same_section_again() -> None:
     section = f"{HOLE.replace(' C0', '')}/Z2./G13.1"
     head = "G21 G98 G40/T0101/G97 S3000 M13"

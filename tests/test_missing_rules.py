@@ -23,7 +23,7 @@ def said(blocks: str, machine: str = "fanuc", *tools: str, head: str = MM) -> li
 TURN = "G0 X50. Z2. C0/G12.1/G1 X40. F200./{}/X50./G13.1"
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("steps", "head"),
     [
@@ -127,7 +127,7 @@ def test_what_needs_no_entry(blocks: str, head: str) -> None:
 FLAT = "G0 X50. Z2. C0/G12.1/G1 X40. {}/C10./C-10./X50./G13.1"
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("feed", "head", "machine"),
     [
@@ -197,7 +197,7 @@ def test_the_first_move_at_feed_may_be_of_z_alone(head: str, machine: str, expec
 AFTER = "G0 X50. Z2. C0/G12.1/G1 X40. F200./C10./C-10./X-50./G13.1/{}"
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("blocks", "at"),
     [
@@ -213,7 +213,7 @@ def test_rapid_traverse_to_the_other_side(blocks: str, at: str, head: str) -> No
     assert said(AFTER.format(blocks), head=head) == [(at, "rapid-through-center")]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     "blocks",
     [
@@ -268,7 +268,7 @@ def test_d_above_the_first_tool_may_be_meant_for_it() -> None:
 ASSIGNED = "G0 X50. Z2. C0/G12.1/G1 X40. F200./{}/C10./C-10./X50./G13.1"
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("block", "rule"),
     [
@@ -304,7 +304,7 @@ def test_it_names_the_variable() -> None:
     assert message.startswith("#5241 changes the coordinate system in the polar mode")
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("blocks", "behind", "block", "rule"),
     [
@@ -323,7 +323,7 @@ def test_an_offset_assigned_in_the_mode_by_a_loop_or_a_call(blocks: str, behind:
     assert (finding.block, finding.rule) == (block, rule)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     "blocks",
     [
@@ -348,7 +348,7 @@ SHIFTED = "{}/G0 X50. Z2. C0/G12.1/G1 X40. F200./C10./C-10./X50./G13.1"
 G92 = "O1\nG21 G40 G97 G94 G18\nT0101\n"
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("blocks", "name", "shift"),
     [
@@ -397,7 +397,7 @@ def test_an_origin_that_the_program_moves(blocks: str, name: str, shift: str, he
     assert message == f"{name} puts X0 {distance} at G12.1"
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("blocks", ["G0 X30./G92 X29.8", "G91 G92 X.2/G90", "G10 L2 P1 X.5/G54", "G90 G10 L2 P1 X1./G54"], one_in=2)
 def test_an_origin_in_g_code_system_b(blocks: str) -> None:
     changes = ("siemens-iso", "mazak-eia") if "G10" in blocks else ("siemens-iso",)
@@ -405,7 +405,7 @@ def test_an_origin_in_g_code_system_b(blocks: str) -> None:
         assert ("G12.1", "origin-off-center") in said(SHIFTED.format(blocks), machine, head=G92)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     "blocks",
     [
@@ -449,7 +449,7 @@ def test_an_origin_at_the_center_or_unknown(blocks: str) -> None:
     assert "origin-off-center" not in [rule for _, rule in said(SHIFTED.format(blocks))]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("blocks", "cause"),
     [
@@ -480,7 +480,7 @@ def test_an_origin_that_is_set_to_what_is_not_known(blocks: str, cause: str) -> 
     assert not given.not_evaluated
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     "blocks", ["G10 L2 P1 X#500/G10 L2 P1 X0", "#5221=#500/G55", "G52 X#500/G52 X0", "G52 X#500/G50.3 X0", "G50 X#500"]
 )
@@ -489,7 +489,7 @@ def test_an_unknown_value_that_does_not_count(blocks: str) -> None:
     assert not [entry for entry in report.not_evaluated if entry.rule == "origin-off-center"]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_what_the_program_sets_takes_the_place_of_the_job() -> None:
     job = {"work_offsets": {"G54": {"x": 0.5}}}
 

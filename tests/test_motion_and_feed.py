@@ -50,7 +50,7 @@ ALONG_Z = "G1 X40. C16. F200\nZ-8.\n{}\nG1 X60.\n"
 INCH_ALONG_Z = "G20\nG1 X2. C.8 F8.\nZ-.3\n{}\nG1 X3.\n"
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("program", "arc"),
     [
@@ -131,7 +131,7 @@ def places(program: str) -> list[tuple[complex, ...]]:
     return list(zip(moves.start.tolist(), moves.end.tolist(), strict=True))
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("base", [POINTED, WHOLE], ids=["with points", "without"], one_in=20)
 @looped("units", ["", "G20 "], ids=["mm", "inch"])
 @looped("place", ["before", "inside", "behind"])

@@ -125,6 +125,7 @@ def test_only_whole_rooms_have_a_row() -> None:
     assert found.stderr == "--write: only for whole rooms (rules, compensation, metal, geometry, tables)\n"
 
 
+@pytest.mark.nightly
 def test_what_counts_as_equivalent_is_still_there() -> None:
     """And has a reason."""
     known = mutants.equivalent()

@@ -49,7 +49,7 @@ def named(program: str, **names: str) -> str:
     return program
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("names", [{"C": "C1"}, {"X": "X1"}, {"X": "X1", "C": "C1", "Z": "Z1"}, {"C": "c1"}], one_in=4)
 def test_a_named_axis_is_the_address_that_the_machine_gives_it(names: dict[str, str]) -> None:
     """The same positions, side by side with plain words or alone in a block; F and G codes behind them count."""
@@ -125,7 +125,7 @@ def test_a_section_on_an_axis_that_is_not_followed_is_not_judged() -> None:
     assert said(report_of(SECOND, "fanuc", TOOL, changes=engaged)) == []
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_an_axis_that_is_not_followed_shifts_no_other() -> None:
     """C2 between the blocks of another section, outside and within it."""
     outside = PLAIN.replace("G28 U0", "G0 C2=90.\nG28 C2=0").replace("G0 X60. C0", "G0 C2=45.\nG0 X60. C2=10. C0")
@@ -138,7 +138,7 @@ def test_an_axis_that_is_not_followed_shifts_no_other() -> None:
     assert missing.reason.startswith("B2, from line 13 on, is not followed, its section is judged without it")
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_a_name_that_the_machine_does_not_have_is_told_with_its_remedy() -> None:
     """Each name once; a machine that names it says nothing."""
     program = PLAIN.replace("G0 X60. C0", "G0 C7=45.\nG0 X60. C0 V9=1. C7=0")
@@ -165,7 +165,7 @@ def test_names_that_cannot_be_are_one_line(names: object) -> None:
         profiles.load("fanuc", {"control": {"named_axes": names}})
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("block", ["R1=5.", "R1=R2*2", "r1=R2*2 X5.", "M2=70", "S3=2000 F5.", "L1=AC(10)"], one_in=5)
 def test_a_word_of_another_language_is_told_and_is_no_mistake(block: str) -> None:
     """It is read as no code, and as no axis of the lathe."""

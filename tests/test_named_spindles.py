@@ -45,7 +45,7 @@ def test_an_excerpt_may_have_had_it_before() -> None:
     assert "c-axis-not-engaged" not in [rule for _, rule in said(report_of(excerpt, "fagor-8055t", "8:radius=4"))]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("machine", "tool"), [("mazak-eia", ""), ("mazak-quick-turn", "M203 S2000\n"), ("mazak-integrex", "M3 S2000\n")]
 )

@@ -125,7 +125,7 @@ def test_a_program_without_words_has_the_default_style() -> None:
     assert style_of(tables_of("%\n", "fanuc")["trace"]) == PLAIN
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_styles_of_the_corpus_are_recognized() -> None:
     if not CORPUS.is_dir():
         pytest.skip("the corpus is not beside the checkout")

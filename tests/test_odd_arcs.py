@@ -100,7 +100,7 @@ def test_odd_arcs_are_written_as_what_they_are(target: str) -> None:
     assert_same_path(program, convert(program, "fanuc-30i", target).data, target)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("target", ["haas-lathe", "okuma-osp", "siemens-transmit"], one_in=5)
 @looped("name", WRITTEN)
 def test_each_odd_arc_is_written_alone(name: str, target: str) -> None:
@@ -115,7 +115,7 @@ def test_an_arc_without_a_radius_is_refused_by_its_line(name: str, target: str) 
     assert (12, "the center of this arc is its start or its end") in reasons
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("code", ["G2", "G3"], one_in=3)
 @looped("x", ["39.998", "40.002"])
 def test_an_arc_along_its_own_radius_is_a_line(code: str, x: str) -> None:
@@ -159,7 +159,7 @@ def test_the_pen_draws_no_arc_without_a_radius(end: complex, center: complex) ->
         pen.arc(end, center, True)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("machine", "moves"),
     [
@@ -174,7 +174,7 @@ def test_an_arc_whose_neighbours_ask_for_an_r_of_0_is_checked(machine: str, move
     assert report_of(f"{moves}\nM30\n", machine, *tools, job={"program_units": "mm"}).verdict
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("side", SIDES, one_in=20)
 @looped("blocks", ["G3 X2. I7.", "G2 X2. I7.", "G3 X2. Y.2 I7. J0", "G3 X4. Y.2 I0. J0", "G3 X3.999 Y.2 I-1. J0"])
 def test_odd_arcs_are_compensated_or_refused(blocks: str, side: str) -> None:
@@ -217,7 +217,7 @@ def test_an_arc_whose_ends_lie_on_no_circle_has_no_keyway() -> None:
     assert (result.exit_code, "internal error" in result.stderr) == (1, False)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.usefixtures("own_folder")
 @looped("first", ["G0 X1 Z4\nG112 Z7", "G0 X50. Z4.\nG112\nG0 Z5.\nG0 C0"])
 def test_a_section_whose_cuts_are_not_known_is_compared_by_its_rapids(first: str) -> None:

@@ -34,6 +34,7 @@ def offset(x: float, c: float) -> list[tuple[float, float]]:
     return [(a + 2 * x * (1 if a > 0 else -1), b + c * (1 if b > 0 else -1)) for a, b in FINISH]
 
 
+@pytest.mark.nightly
 @looped("corner", [1, 2, 3])
 @looped("allowance", [(0.3, 0.3), (0.25, 0.5)])
 @looped("wrong", ["finish", "roughing"])
@@ -63,6 +64,7 @@ def test_two_points_elsewhere_are_another_shape(corners: list[tuple[float, float
 FLAT = "G1 X60. C20. F1500\nZ{z} F300\n{side} X30. F250\nC-20.\nG40 X60. F1500\nZ2.\n"
 
 
+@pytest.mark.nightly
 @looped(
     ("passes", "lines"),
     [

@@ -23,7 +23,7 @@ REPEATED = {
 NOT_THERE = (("mazak-eia", "feed per revolution"), ("gsk-988", "a point"))
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("control", "name"),
     [(control, name) for control in CONTROLS for name in REPEATED if (control, name) not in NOT_THERE],
@@ -48,7 +48,7 @@ def test_a_silenced_number_stands_for_no_other() -> None:
     assert [(finding.rule, finding.line) for finding in report.findings] == [("number-without-point", 25)]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_a_cutter_too_large_for_ramps_and_an_arc_is_one_finding() -> None:
     """R 12 does not fit into R 4, nor into ramps of 10 mm; with a ramp of 3 mm that is told, too, since R 4 needs 4."""
     way = ("C0 F150/C10.392", "C0 F150/C2./G2 X34. C3.354 R4./G1 X36. C10.392")
@@ -62,7 +62,7 @@ def test_a_cutter_too_large_for_ramps_and_an_arc_is_one_finding() -> None:
     }
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("change", "rule", "said"),
     [
@@ -91,7 +91,7 @@ def test_what_is_to_be_written_and_where(change: tuple[str, str], rule: str, sai
     assert any(said in finding.message for finding in report.findings if finding.rule == rule), report.findings
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("changes", "rule", "line"),
     [

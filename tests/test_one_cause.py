@@ -608,7 +608,7 @@ CASES = [
 ]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(("mistake", "form"), CASES, one_in=156)
 def test_one_mistake_is_one_finding(mistake: Mistake, form: Callable[[Mistake], tuple[list[str], int]]) -> None:
     program, before = form(mistake)
@@ -619,7 +619,7 @@ def test_one_mistake_is_one_finding(mistake: Mistake, form: Callable[[Mistake], 
     holds(report, mistake, line)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("mistake", [one for one in MISTAKES if one.inch], ids=title, one_in=36)
 def test_it_is_one_finding_in_inch(mistake: Mistake) -> None:
     program = [in_inch(block) for block in plain(mistake)[0]]
@@ -631,7 +631,7 @@ def test_it_is_one_finding_in_inch(mistake: Mistake) -> None:
     assert rule == "c-feed-above-limit" or program[line - 1].endswith(in_inch(mistake.block))
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("mistake", "machine"),
     [
@@ -648,7 +648,7 @@ def test_it_is_one_finding_on_other_controls(mistake: Mistake, machine: str) -> 
     assert serious(report)[0].rule == mistake.rule
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("head", "section", "end", "block", "rule"), [one[1:] for one in WHOLE], ids=[one[0] for one in WHOLE], one_in=4
 )
@@ -834,7 +834,7 @@ def chains() -> dict[str, set[str]]:
     }
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_no_rule_follows_from_itself() -> None:
     follows = chains()
     reached = {name: set(causes) for name, causes in follows.items()}
@@ -872,7 +872,7 @@ def test_a_chain_hangs_on_what_is_reported_of_it() -> None:
     assert told(without) == [(7, ROOT_OF_NEAR)]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("severities", "expected"),
     [
@@ -922,7 +922,7 @@ def test_the_summary_counts_causes_alone(
     assert [found["rule"] for found in shown["files"][0]["findings"]] == rules
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_what_follows_is_shown_where_it_is_asked_for(near: str) -> None:
     asked = call("check", near, "--tool", "1:radius=4", "--show-following").stdout
     assert NEXT_OF_NEAR in asked
@@ -942,7 +942,7 @@ def test_angles_under_the_address_of_another_control_are_named_as_written() -> N
     assert found
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("scale", [1, 25.4])
 def test_a_wrong_word_in_an_arc_that_ends_right_explains_no_other_arc(scale: float) -> None:
     """The end of an arc with K is where it is meant: what is wrong behind it is wrong itself."""

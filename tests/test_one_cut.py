@@ -60,7 +60,7 @@ def findings_of(section: str, radius: float = 4.0, units: str = "G21") -> list[F
     return [one for one in found.findings if one.severity != "note"]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("name", SOUND, one_in=20)
 def test_a_wrong_point_is_one_finding_of_what_is_cut(name: str) -> None:
     assert findings_of(SOUND[name]) == []
@@ -77,7 +77,7 @@ def test_a_wrong_point_is_one_finding_of_what_is_cut(name: str) -> None:
     assert cutting or name not in ("rooms", "three rooms", "groove")
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(("radius", "room"), [(7.0, 6.0), (6.1, 6.0)])
 def test_a_neck_says_for_which_r_it_has_room(radius: float, room: float) -> None:
     (found,) = findings_of(SOUND["rooms"], radius)

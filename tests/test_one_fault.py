@@ -163,7 +163,7 @@ def test_the_program_without_a_fault_has_no_finding(machine: str, program: str, 
     assert (report.verdict, said(report)) == ("pass", [])
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("fault", OKUMA_FAULTS, one_in=12)
 def test_one_fault_is_one_finding(fault: str) -> None:
     written, meant, line, rule = OKUMA_FAULTS[fault]

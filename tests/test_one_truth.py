@@ -174,7 +174,7 @@ def certified(folder: Path, control: str, golden: str, text: str, verdict: str =
     return result
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("control", PROGRAMS)
 def test_the_program_is_sound_and_like_itself(control: str, tmp_path: Path) -> None:
     text = program(control)
@@ -185,7 +185,7 @@ def test_the_program_is_sound_and_like_itself(control: str, tmp_path: Path) -> N
     assert certified(tmp_path, control, text, text).exit_code == 0
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(("control", "name"), pairs(UNKNOWN), one_in=11)
 def test_a_value_that_is_not_known_is_known_to_no_command(control: str, name: str, tmp_path: Path) -> None:
     sound, text = program(control), program(control, UNKNOWN[name][control])
@@ -212,7 +212,7 @@ def test_a_value_that_is_not_known_is_known_to_no_command(control: str, name: st
         assert (result.exit_code, result.stdout) == (2, ""), command
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(("control", "name"), pairs(ORDERS), one_in=11)
 def test_another_order_is_another_program(control: str, name: str, tmp_path: Path) -> None:
     sound, text = program(control), program(control, ORDERS[name][control])
@@ -240,7 +240,7 @@ MISREAD = {
 }
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(("control", "name"), [*itertools.product(("fanuc-30i", "haas-lathe", "siemens-transmit"), MISREAD)], one_in=5)
 def test_what_a_control_cannot_read_is_not_compared(control: str, name: str, tmp_path: Path) -> None:
     sound, text = program(control), program(control, MISREAD[name])
@@ -262,7 +262,7 @@ UNKNOWN_STATES = {
 }
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("words", UNKNOWN_STATES)
 def test_a_state_that_is_not_known_is_known_to_no_command(words: str, tmp_path: Path) -> None:
     control, place = "siemens-transmit", UNKNOWN_STATES[words]
@@ -296,7 +296,7 @@ ERRORS = {
 }
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(("control", "words"), [(control, words) for control, changes in ERRORS.items() for words in changes])
 def test_what_a_check_finds_in_one_of_two_programs_is_not_the_same_metal(
     control: str, words: str, tmp_path: Path
@@ -397,7 +397,7 @@ def test_a_variable_by_its_index_is_the_variable(words: str, verdict: str) -> No
     assert depth in in_one_line(tables_of(text, "okuma-osp", CUTTER))
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("control", "place", "words"),
     [
@@ -434,7 +434,7 @@ OF_Z = {
 }
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("control", OF_Z, one_in=4)
 def test_moves_of_z_alone_are_those_of_the_path(control: str, tmp_path: Path) -> None:
     sound, (old, deeper, other_feed, divided) = program(control), OF_Z[control]
@@ -444,7 +444,7 @@ def test_moves_of_z_alone_are_those_of_the_path(control: str, tmp_path: Path) ->
         assert certified(tmp_path, control, sound, text).exit_code == code
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("control", ["fanuc-30i", "fanuc-16i", "doosan"])
 def test_a_feed_of_an_unknown_unit_is_not_that_of_a_known_one(control: str, tmp_path: Path) -> None:
     engage = [("G28 H0", "M35/G28 H0")] * (control == "doosan")
@@ -454,7 +454,7 @@ def test_a_feed_of_an_unknown_unit_is_not_that_of_a_known_one(control: str, tmp_
     assert (result.exit_code, "no code says whether F is per minute" in result.stdout) == (2, True)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("control", C_OF_ENTRY)
 def test_the_same_metal_at_an_unknown_angle_is_not_compared(control: str, tmp_path: Path) -> None:
     text = program(control, *C_OF_ENTRY[control])
@@ -465,7 +465,7 @@ def test_the_same_metal_at_an_unknown_angle_is_not_compared(control: str, tmp_pa
     assert "c-angle-unknown-at-entry" in rules
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(("control", "name"), [*itertools.product(("fanuc-30i", "doosan", "mazak-eia"), POINTS)])
 def test_a_lost_point_is_seen_by_all(control: str, name: str, tmp_path: Path) -> None:
     engage = [("G28 H0", "M200/G28 H0" if "mazak" in control else "M35/G28 H0")] * (control != "fanuc-30i")
@@ -475,7 +475,7 @@ def test_a_lost_point_is_seen_by_all(control: str, name: str, tmp_path: Path) ->
     assert compared(tmp_path, control, sound, text).exit_code == 1
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("control", CONTROLS)
 def test_what_follows_from_what_is_silenced_is_silenced(control: str) -> None:
     low, high = HEX.index("C10.392"), HEX.index("/G40 X")
@@ -652,7 +652,7 @@ def test_a_variable_that_nobody_reads_changes_nothing(control: str, words: str, 
     assert (result.exit_code, f"{words} is added" in result.stdout) == (int(is_offset), is_offset)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("words", ["G54", "G52 X1.", "#2001=5.", "T0102", "G53 X0."])
 def test_what_displaces_the_contour_is_not_written(words: str, tmp_path: Path) -> None:
     (file,) = written(tmp_path, program("fanuc-30i", ("/G42", f"/{words}/G42")))

@@ -40,7 +40,7 @@ def lines_of(text: str) -> list[str]:
     return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @given(texts, st.sampled_from(UNITS))
 def test_a_place_of_the_editor_leads_there_and_back(text: str, units: str) -> None:
     opened = OpenText(text, units)
@@ -51,7 +51,7 @@ def test_a_place_of_the_editor_leads_there_and_back(text: str, units: str) -> No
         assert position.line < len(lines_of(opened.text))
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @given(texts, st.sampled_from(UNITS))
 def test_places_are_lines_and_units(text: str, units: str) -> None:
     opened = OpenText(text, units)
@@ -66,7 +66,7 @@ def test_places_are_lines_and_units(text: str, units: str) -> None:
     assert opened.offset(types.Position(1000, 0)) == len(opened.text)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @given(texts)
 def test_lines_of_reports_are_those_of_the_reader(text: str) -> None:
     opened = OpenText(text)
@@ -82,7 +82,7 @@ def test_lines_of_reports_are_those_of_the_reader(text: str) -> None:
         assert opened.character_of(opened.line_range(line).start) == int(read.line_starts[line - 1])
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @given(texts, texts, st.tuples(st.integers(0, 99), st.integers(0, 99)), st.sampled_from(UNITS))
 def test_changes_make_the_text_that_the_editor_has(before: str, typed: str, at: tuple[int, int], units: str) -> None:
     opened = OpenText(before, units)

@@ -80,7 +80,7 @@ def has_statements(path: str, own: str) -> bool:
     return machine_of(own).macro.language != "custom-macro" and bool(blocks.is_macro.any())
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("name", profiles.names(), one_in=20)
 def test_a_program_for_another_machine_is_read_or_fails_with_one_finding(name: str) -> None:
     for path, own, other in PAIRS:
@@ -333,7 +333,7 @@ def test_a_map_in_one_program_makes_no_map_of_a_macro_in_another() -> None:
     assert [found.line for found in report.findings if found.rule == RULE] == [7]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("name", ["fanuc", "haas-lathe", "doosan"])
 @looped(
     ("on", "off"),
@@ -392,7 +392,7 @@ def test_nothing_is_told_but_which_machine_it_is_for(program: str, name: str) ->
     assert len(chosen.findings) > 1
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(("program", "name"), [(OKUMA, "okuma-osp"), (SIEMENS, "siemens-transmit"), (FAGOR, "fagor-8055t")], one_in=1)
 def test_a_new_job_names_the_same_machine(tmp_path: Path, program: str, name: str) -> None:
     path = tmp_path / "a.nc"

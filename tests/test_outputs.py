@@ -130,7 +130,7 @@ INPUTS = ("extended/base.job", "jobs/lathe", "jobs/parent", "table", "known.json
 
 
 @pytest.mark.one_in(8)
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.parametrize("name", INPUTS)
 @pytest.mark.parametrize("command", WRITING)
 def test_no_command_takes_the_place_of_what_settles_how_it_runs(command: str, name: str) -> None:
@@ -140,7 +140,7 @@ def test_no_command_takes_the_place_of_what_settles_how_it_runs(command: str, na
 
 
 @pytest.mark.one_in(3)
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.parametrize("options", [(), ("--jobs", "2"), ("--no-cache",)])
 def test_what_only_the_check_finds_stays_too(options: tuple[str, ...]) -> None:
     """A link leads from the folder of subprograms to the called file, which has no name of a program."""
@@ -153,7 +153,7 @@ def test_what_only_the_check_finds_stays_too(options: tuple[str, ...]) -> None:
     assert Path("new.json").exists()
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_a_report_of_last_time_is_written_anew() -> None:
     with_job()
     for _ in range(2):

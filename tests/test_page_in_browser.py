@@ -244,6 +244,7 @@ def test_packed_columns_come_out_as_they_went_in(opened: Opened) -> None:
     assert left == ["rates", "large", "centers", "rings", "flags", "texts", "empty"]
 
 
+@pytest.mark.nightly
 def test_a_long_program_is_drawn_from_packed_data(browser: Any, address: str, tmp_path: Path) -> None:
     source = [f"N{number} G1 X{number}." for number in range(1, 20_001)]
     long = msgspec.structs.replace(picture(hexagon()), source=source, source_lines=len(source))

@@ -176,7 +176,7 @@ def test_sizes_in_inch() -> None:
     assert finding.severity == "warning"
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("comment", "sections", "message"),
     [
@@ -202,7 +202,7 @@ def test_sizes_in_the_title_and_beside_the_tool(comment: str, sections: list[str
     assert found.endswith(message)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     "comment",
     [

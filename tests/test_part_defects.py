@@ -45,7 +45,7 @@ def area_of(keys: dict[str, Any], features: Feature) -> Any:
     return area
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("family", ["triangle", "hexagon", "dodecagon", "polygon", "circle", "circle aside", "flat", "flats"], one_in=2)
 def test_the_keys_of_a_part_say_what_its_feature_is(family: str) -> None:
     for seed in range(12):
@@ -72,14 +72,14 @@ def test_a_defect_of_each_kind_can_be_drawn(kind: str) -> None:
     assert not judged(defect.plan, defect.sound, defect.plan.allowed).differs
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("number", range(6), one_in=6)
 def test_nothing_is_said_of_a_sound_part(number: int) -> None:
     result = part_defects.sound_of(number, FAMILIES[number::6], None)
     assert (result.verdict, result.says) == ("pass", ())
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("number", [0, 3, 4], one_in=3)
 def test_a_defect_is_said(number: int) -> None:
     result = part_defects.defect_of(number, tuple(KINDS)[number::6], None)

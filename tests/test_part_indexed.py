@@ -254,7 +254,7 @@ def test_json_has_the_sections() -> None:
 
 
 @pytest.mark.one_in(8)
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.parametrize("inch", [False, True])
 @pytest.mark.parametrize("control", ["fanuc", "haas-lathe"])
 @pytest.mark.parametrize("entry", [0.0, 20.0])

@@ -58,7 +58,7 @@ def test_a_quadrilateral_with_corners_of_chords_that_ends_past_its_start(control
     assert "open" not in seen.text
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_closed_contours_that_end_past_their_start() -> None:
     assert [seed for seed in range(12) if not is_seen(contour(seed))] == []
 
@@ -83,7 +83,7 @@ def test_two_contours_of_one_level_that_end_past_their_start() -> None:
 # ---- contours that end beside their start ----
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("control", BY_MACHINE, one_in=9)
 def test_a_contour_that_ends_beside_its_start_keeps_its_last_wall(control: str) -> None:
     for number in range(24):
@@ -184,7 +184,7 @@ def test_flats_by_increments_of_z() -> None:
     assert seen.text == "hexagon, 30.000 across flats; to Z not known"
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_shapes_at_two_depths_by_increments_of_z() -> None:
     """They are told apart, though nobody knows at which Z they are."""
     first = hexagon("fanuc").loop()

@@ -26,6 +26,7 @@ def off(levels: list[float], code: str, turning: str = "") -> dict[int, float]:
     return {(int(lines[row]) - turning.count("\n") - 2) // 4: z for row, z in depths.expected.items()}
 
 
+@pytest.mark.nightly
 @looped("code", UNITS)
 @looped(
     ("levels", "expected"),

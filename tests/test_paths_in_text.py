@@ -124,7 +124,7 @@ points = st.lists(
 ).map(lambda values: np.array(values, complex))
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @settings(max_examples=60)
 @given(points, points, points, st.integers(8, 70), st.integers(2, 20), st.booleans())
 def test_any_points_fit(
@@ -218,7 +218,7 @@ def distance_to(points: Points, path: Points) -> Floats:
     return np.abs(points[:, None] - path[None, :]).min(axis=1)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_paths_are_those_of_the_program() -> None:
     program = HEAD + "G1 G42 X30. F100\nG3 X30. C0 I-15. J0\nG40 X60.\nG13.1\nM30\n"
     view = only_view(program, "8:radius=4")
@@ -265,7 +265,7 @@ def test_of_many_sections_the_first_are_shown_and_the_others_counted() -> None:
     assert [view.remarks for view in views[-2:]] == [[], ["8 more sections are not shown"]]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_very_many_blocks_are_few_points() -> None:
     angle = np.arange(30_000) / 500
     blocks = "\n".join(f"X{40 * np.cos(one):.4f} C{20 * np.sin(one):.4f}" for one in angle)

@@ -171,6 +171,7 @@ SLOW = {
 }
 
 
+@pytest.mark.nightly
 @looped("name", SLOW)
 def test_a_pattern_that_costs_more_is_seen(name: str) -> None:
     pattern, method = SLOW[name]

@@ -124,7 +124,7 @@ def distance(point: Any, path: Any) -> Any:
     return np.abs(point[:, None] - start - along * way / length).min(axis=1)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @settings(deadline=None, max_examples=20)
 @given(st.integers(0, 2**32 - 1), st.integers(50, 400))
 def test_thinned_paths_lie_as_near_as_is_said(seed: int, most: int) -> None:
@@ -273,7 +273,7 @@ def test_the_finished_part_is_filled() -> None:
     assert shapely.Polygon(ring).area == pytest.approx(6 * 15**2 * math.tan(math.pi / 6), rel=1e-4)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_of_a_pocket_only_what_is_near_is_shown_unless_the_bar_is_known() -> None:
     (part,) = section_of(GROOVE, "8:radius=2").parts
     assert not part.known_outside
@@ -283,7 +283,7 @@ def test_of_a_pocket_only_what_is_near_is_shown_unless_the_bar_is_known() -> Non
     assert far.max() == pytest.approx(45, abs=1e-3)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_an_overcut_is_the_area_that_the_cutter_takes() -> None:
     marks = section_of(GROOVE, "8:radius=4").marks
     assert [(mark.kind, mark.lines, mark.depth) for mark in marks] == [("overcut", [7, 13], 2), ("overcut", [13, 7], 2)]
@@ -427,12 +427,12 @@ def test_findings_are_never_thinned(monkeypatch: pytest.MonkeyPatch) -> None:
 # ---- data ----
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_the_same_program_makes_the_same_picture() -> None:
     assert drawn_of(GROOVE, "8:radius=4") == drawn_of(GROOVE, "8:radius=4")
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_columns_have_one_length_and_are_json() -> None:
     import msgspec
 

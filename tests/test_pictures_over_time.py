@@ -117,7 +117,7 @@ def test_samples_of_other_lathes_are_drawn_as_their_trace(path: str) -> None:
     assert sum(compared) >= 3
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_in_the_center_c_jumps_by_half_a_turn() -> None:
     section = section_of(CENTER)
     moves, curves = section.moves, section.rates

@@ -100,7 +100,7 @@ def test_so_it_is_where_the_contour_is_turned(name: str) -> None:
     assert expected in said(program(corners), drawing([change(corner) for corner in corners]))
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_so_it_is_in_inch() -> None:
     text = program([corner / 2 for corner in EGG], scale=25.4)
     job = msgspec.structs.replace(drawing([corner / 2 - 12.7 for corner in EGG], 25.4), units="inch")
@@ -110,7 +110,7 @@ def test_so_it_is_in_inch() -> None:
     assert "The drawing would fit 25.4 times as small (as one in mm): within 0" in said(text, job, 3 / 25.4)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("of_file", [25.4, math.nan])
 def test_units_of_the_file_and_of_the_program(of_file: float) -> None:
     """A drawing without units has those of the program: one in mm does not fit a program in inch."""
@@ -119,7 +119,7 @@ def test_units_of_the_file_and_of_the_program(of_file: float) -> None:
     assert "25.4 times as small (as one in mm)" in said(text, job, 3 / 25.4)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_of_several_contours_each_is_found_in_a_drawing_in_inch() -> None:
     """The curve that comes nearest is another one then."""
     text = program(polygon(6, 13.5)).replace(TAIL, "G13.1\n") + program(polygon(4, 20.0), z=-8.0).removeprefix("O1\n")
@@ -134,7 +134,7 @@ def test_of_several_contours_each_is_found_in_a_drawing_in_inch() -> None:
         assert "The drawing would fit 25.4 times as large (as one in inch): within 0" in finding.message
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("change", "expected"),
     [
@@ -166,7 +166,7 @@ def center_path(corners: list[complex]) -> str:
     return HEAD + "\n".join(blocks) + "\n" + TAIL
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("change", "expected"),
     [
@@ -187,7 +187,7 @@ def test_so_it_is_without_compensation(change: Any, expected: str, machine: str,
     assert expected in said(text, drawing([change(corner) for corner in polygon(6, 13.5, turn=turn)]), 4.0, machine)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_a_shape_that_is_shifted_or_in_other_units() -> None:
     text = program(polygon(6, 13.5))
     for expected, part in (
@@ -199,7 +199,7 @@ def test_a_shape_that_is_shifted_or_in_other_units() -> None:
         assert expected in said(text, {"part": [{"shape": "hexagon", **part}]})
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("off", [0.03, 0.06, 0.3, -0.3], one_in=4)
 def test_one_side_that_is_off_is_no_shift(off: float) -> None:
     text = program(polygon(4, 20.0, {1: off}))

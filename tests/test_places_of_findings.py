@@ -41,7 +41,7 @@ REVERSED = contour(*(f"X{x:.1f} C{c:.6f}" for x, c in CORNERS[:1]), "X0.2 C17.26
                    *(f"X{x:.1f} C{c:.6f}" for x, c in CORNERS[2:]))  # fmt: skip
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("program", "rule", "place", "span"),
     [
@@ -69,7 +69,7 @@ def test_a_finding_is_marked_where_it_is_at_its_scale(
     assert 0 <= mark.move < len(found.sections[0].moves.line)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_the_other_lines_of_a_finding_are_listed() -> None:
     places, _ = pictured(FAST, limits={"c_feed": 3600.0})
     mark = places["c-feed-above-limit"]
@@ -80,7 +80,7 @@ def test_the_other_lines_of_a_finding_are_listed() -> None:
     assert both.places[0][1] == -both.places[1][1] == -3
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("before", "behind", "rule", "place"),
     [
@@ -205,7 +205,7 @@ def test_without_r_the_path_is_a_line_and_it_is_said_what_to_give() -> None:
     assert "--tool 8:radius=..." in section.makes[0]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_what_the_job_asks_for_lies_as_the_section_writes_it() -> None:
     part = {"shape": "hexagon", "across_flats": 30.0, "turned": 0.0}
     program = HEXAGON.replace("X80. C0 Z2.", "X80. C30. Z2.")

@@ -85,7 +85,7 @@ def test_a_page_holds_findings_and_pictures_whatever_is_found() -> None:
     assert PLOTLY in Path("part.html").read_text("utf-8")
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_the_page_of_check_is_that_of_plot_and_fails_as_check_does() -> None:
     make(a__nc=GROOVE, b__nc=HEXAGON)
     assert call("plot", "a.nc", *RADIUS, "-o", "plot.html").exit_code == 0
@@ -204,6 +204,7 @@ def test_a_page_is_no_program() -> None:
 
 
 @pytest.mark.ci
+@pytest.mark.one_in(5)
 @pytest.mark.parametrize(
     "sign", ["</script><script>alert(1)</script>", "<!--<script>", "\u2028\u2029", ACTING, "\x00\x1b"]
 )

@@ -28,7 +28,7 @@ SILENT = {
 }
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(("control", "name"), [*itertools.product(CONTROLS, LOST)])
 def test_each_is_looked_at_and_they_are_one_finding(control: str, name: str) -> None:
     change, word, more = LOST[name]
@@ -42,7 +42,7 @@ def test_each_is_looked_at_and_they_are_one_finding(control: str, name: str) -> 
     assert found[0].values["count"] == 1 + more
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(("control", "name"), [*itertools.product(CONTROLS, SILENT)])
 def test_what_needs_no_point_is_silent(control: str, name: str) -> None:
     report = report_of(hexagon(SILENT[name]), control, CUTTER)
@@ -62,7 +62,7 @@ def counting(step: float) -> str:
     return re.sub(r"(?<=[XZC])-?\d+\.\d*", lambda number: f"{float(number[0]) / step:.0f}", hexagon())
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("control", ["gsk-988", "fanuc-30i", "mazak-eia"])
 def test_a_contour_of_meters_names_the_unit_that_makes_it_small(control: str) -> None:
     """56 mm in counts of 1 um or of 10 um; in whole millimeters, with or without points, nothing is said."""

@@ -87,7 +87,7 @@ few = settings(max_examples=80, deadline=None)
 # ---- closed forms against the path itself ----
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @few
 @given(moves)
 def test_length_and_distances_are_those_of_the_path(move: Move) -> None:
@@ -100,7 +100,7 @@ def test_length_and_distances_are_those_of_the_path(move: Move) -> None:
     assert move.of(polar.farthest) >= np.abs(points).max() - 1e-9
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @few
 @given(smooth_moves)
 def test_c_sweep_is_that_of_the_path(move: Move) -> None:
@@ -122,7 +122,7 @@ def test_rates_are_those_of_the_path(move: Move) -> None:
     assert move.of(rates.x_feed, feed) <= feed * (1 + 1e-12)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @few
 @given(smooth_moves)
 def test_c_acceleration_is_that_of_the_path(move: Move) -> None:
@@ -134,7 +134,7 @@ def test_c_acceleration_is_that_of_the_path(move: Move) -> None:
     assert move.of(rates.c_acceleration, feed) == pytest.approx(found, rel=2e-2, abs=rounding + 1e-6)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @few
 @given(smooth_moves)
 def test_x_acceleration_is_that_of_the_path(move: Move) -> None:
@@ -146,7 +146,7 @@ def test_x_acceleration_is_that_of_the_path(move: Move) -> None:
     assert move.of(rates.x_acceleration, feed) == pytest.approx(found, rel=2e-2, abs=rounding + 1e-6)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @few
 @given(moves, st.floats(1, 1e5))
 def test_feed_allowed_is_just_allowed(move: Move, limit: float) -> None:
@@ -211,7 +211,7 @@ def test_the_manuals_formula() -> None:
     assert line.of(rates.feed_allowed, limit) == pytest.approx(314.159, abs=1e-3)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @few
 @given(moves, st.floats(1, 1e5))
 def test_the_manuals_formula_is_never_too_high(move: Move, limit: float) -> None:
@@ -340,7 +340,7 @@ def test_turning_the_plane_shifts_c_alone(move: Move, turn: float) -> None:
         assert turned.of(function, *more) == pytest.approx(move.of(function, *more), rel=1e-6, abs=1e-6)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @few
 @given(smooth_moves, st.floats(0.05, 0.95))
 def test_splitting_a_move_changes_no_maximum(move: Move, share: float) -> None:
@@ -400,7 +400,7 @@ def test_center_of_a_half_circle_whose_radius_is_short_by_rounding() -> None:
     assert polar.center_from_radius(start, end, radius, kind)[0] == pytest.approx(3.7 - 2.35j)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @few
 @given(arcs())
 def test_center_from_radius_finds_the_center(arc: Move) -> None:
@@ -553,7 +553,7 @@ def test_c_outside_sections_is_unknown() -> None:
     assert c_angles(section=np.zeros(0, dtype=np.int64), entry=[]) == ([], [])
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @few
 @given(st.lists(point, min_size=3, max_size=30), st.floats(-360, 360))
 def test_c_angles_lead_to_the_points(points: list[complex], entry: float) -> None:

@@ -53,7 +53,7 @@ def sections(program: str, *tools: str, machine: str = "fanuc", **more: Any) -> 
 # ---- the numbers ----
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("approach", "half", "feed", "radius"),
     [(80, 20, 200, 4), (80, 20, 200, 0), (80, 20, 200, 20), (100, 15, 317, 6.35), (60, 29, 1000, 0.5)],
@@ -75,7 +75,7 @@ def test_the_same_in_inch(approach: float, half: float, feed: float, radius: flo
     assert (found.units, found.radius) == ("inch", pytest.approx(25.4 * radius))
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("machine", ["fanuc-16i", "fanuc-30i", "doosan", "gsk-988", "siemens-iso"])
 def test_other_controls_see_the_same_path(machine: str) -> None:
     [found] = sections(f"{HEAD}{square(80, 20, 200)}M30\n", "1:radius=4", machine=machine)

@@ -118,7 +118,7 @@ def test_a_length_offset_in_the_mode_moves_nothing_on_the_plane(block: str, at: 
     assert said(found) == [(6 + at, "tool-length-offset-in-polar")]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("block", LENGTH_OFFSETS, one_in=2)
 def test_a_length_offset_positions_no_c(block: str) -> None:
     assert after(f"G0 C30.\n{block}\nH5.\n", "c_angle") == [30, 30, 35]
@@ -166,7 +166,7 @@ def test_a_wrong_address_of_the_virtual_axis_is_read_as_it_was_meant(
     assert found == sorted([*others_said, (7, "wrong-axis-address-in-polar")])
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_one_wrong_address_among_right_ones() -> None:
     """A slip in one block; beside the right address the right one counts."""
     program = AROUND.format("C", "H", "G12.1", "G13.1")

@@ -63,7 +63,7 @@ def test_the_plane_of_a_whole_program(plane: str, program: str, rules: list[tupl
     assert said(report_of(program, changes=changes, only=["plane-wrong-at-entry"])) == rules
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(("code", "rule"), [("", "feed-mode-unknown"), ("G98", None), ("G99", "feed-per-revolution-in-polar")])
 def test_what_f_means_is_known_where_the_lathe_says_it(code: str, rule: str | None) -> None:
     program = "O1\nG0 X60. C0\nG12.1\nG1 X40. F200\nC10.\nX60.\nG13.1\nM30\n"

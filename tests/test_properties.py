@@ -172,6 +172,7 @@ def test_radius_twin_has_the_same_path(moves: list[Move]) -> None:
     same_path(moves_of(program(moves), FANUC), moves_of(program(moves, x_factor=1.0), by_radius))
 
 
+@pytest.mark.nightly
 @given(contours(), st.floats(-math.pi, math.pi))
 @settings(max_examples=EXAMPLES, deadline=None)
 def test_turning_the_entry_shifts_only_c(moves: list[Move], angle: float) -> None:
@@ -184,6 +185,7 @@ def test_turning_the_entry_shifts_only_c(moves: list[Move], angle: float) -> Non
         np.testing.assert_allclose(theirs - ours, degrees, atol=1e-9)
 
 
+@pytest.mark.nightly
 @given(contours(), st.floats(-math.pi, math.pi))
 @settings(max_examples=EXAMPLES, deadline=None)
 def test_turning_the_contour_keeps_speed_and_distance(moves: list[Move], angle: float) -> None:
@@ -223,6 +225,7 @@ def rounded_square(corner: float, on: str) -> str:
     return COMPENSATED.format(on=on, half=words(half), inner=words(2 * half), corner=words(corner))
 
 
+@pytest.mark.nightly
 @given(coordinate(0.5, 25), coordinate(0, 12))
 @settings(max_examples=EXAMPLES, deadline=None)
 def test_a_rounded_square_is_followed_at_its_distance(corner: float, radius: float) -> None:

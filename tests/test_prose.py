@@ -342,7 +342,7 @@ def test_the_sample_of_the_guide_copied_with_its_descriptions_is_one_finding(lay
     assert len(report.polar_sections) == 1
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("layout", ["as printed", "blanks for the tab", "Markdown", "HTML", "description below"])
 def test_a_real_fault_beside_the_descriptions_is_found(layout: str) -> None:
     program = table().replace("Z-.88\t", "G0 Z-.88\t")

@@ -171,7 +171,7 @@ def lead_to(route: str, folder: str) -> None:
 
 
 @pytest.mark.one_in(21)
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.parametrize("route", ROUTES)
 def test_no_text_of_a_file_outside_is_quoted(route: str) -> None:
     lead_to(route, "../secret")

@@ -32,7 +32,7 @@ def sides(first: str = "") -> str:
     return first + "\n".join(f"X{x} Y{y}" for x, y in points)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("machine", MODES, one_in=4)
 @looped(
     ("down", "start_up", "contour", "cancel"),

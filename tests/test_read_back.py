@@ -70,6 +70,7 @@ def unrolled(path: FedPath, angle: float, step: float) -> str:
     return "\n".join([*blocks, "M30", ""])
 
 
+@pytest.mark.nightly
 @looped("angle", [0.0, 30.0])
 def test_points_in_steps_are_the_same_way_on_the_part_up_to_their_chords(angle: float) -> None:
     tables = tables_of(HEXAGON.format(angle=f"{angle}"), "fanuc", "8:radius=4,nose=0")
@@ -181,6 +182,7 @@ FAULTS = [
 CASES = [(name, faults) for name in WORK for faults in (FAULTS[1:8:2] if name == "roll" else FAULTS)]
 
 
+@pytest.mark.nightly
 @looped(("name", "faults"), CASES, one_in=13)
 def test_a_rewriter_writes_nothing_where_an_order_a_depth_or_f_is_lost(
     name: str, faults: list[tuple[str, str]], monkeypatch: pytest.MonkeyPatch

@@ -61,7 +61,7 @@ def of_family(family: str, seed: int) -> list[Mismatch]:
     return differences(tables, made_by(tables), bar, all_moves=False)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("family", FAMILIES, one_in=13)
 def test_words_of_a_family_are_what_its_cutters_leave(family: str) -> None:
     assert [(seed, found) for seed in range(SHARE) if (found := of_family(family, seed))] == []

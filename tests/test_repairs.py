@@ -71,7 +71,7 @@ def test_each_repair_is_of_a_rule_and_has_a_page(name: str) -> None:
     assert kinds == [False, True] * (len(kinds) // 2)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(("name", "bad", "good"), pairs(), one_in=12)
 def test_the_fix_makes_the_bad_example_the_good_one(name: str, bad: Example, good: Example) -> None:
     assert (bad.machine, bad.tools, bad.settings) == (good.machine, good.tools, good.settings)
@@ -85,7 +85,7 @@ def test_the_fix_makes_the_bad_example_the_good_one(name: str, bad: Example, goo
     assert sorted(others) == sorted(rule for _, rule in said(report_of_example(good)))
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("end", ["\r\n", "\n\r\r", "\r\r\n", "\r"], one_in=14)
 @looped(("name", "bad", "good"), pairs())
 def test_lines_keep_their_ends(name: str, bad: Example, good: Example, end: str) -> None:

@@ -67,7 +67,7 @@ def test_all_words_repeated_in_each_block_are_no_moves(machine: str) -> None:
     )
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.one_in(12)
 @pytest.mark.parametrize("seed", range(0, 60, 3))
 def test_contours_with_z_repeated_give_the_same(seed: int) -> None:

@@ -49,6 +49,7 @@ def check(*words: str) -> Printed:
     return found(*words) or run(*words)
 
 
+@pytest.mark.nightly
 @pytest.mark.one_in(5)
 @pytest.mark.parametrize("form", ["text", "short", "concise", "json", "jsonl"])
 def test_what_is_printed_again_is_what_was_printed(form: str) -> None:
@@ -76,6 +77,7 @@ def _link(path: Path, target: Path) -> None:
 ELSEWHERE = ("a program that is new",)
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("name", [*CHANGES, *OTHERS])
 def test_each_file_that_a_run_has_looked_for_counts(name: str) -> None:
     words = (*NAMED, "--format", "json")
@@ -126,6 +128,7 @@ def test_a_file_that_changes_during_the_run_is_no_base_of_it(monkeypatch: pytest
     assert found("a.nc") is None
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize(
     "words",
     [

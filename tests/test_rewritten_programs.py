@@ -280,7 +280,7 @@ PLAIN = [
 ]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("machine", ["fanuc-30i", "mitsubishi-m700"], one_in=5)
 @looped("program", PLAIN)
 def test_any_section_is_unrolled_or_refused_with_its_line(program: str, machine: str) -> None:

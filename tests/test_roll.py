@@ -115,7 +115,7 @@ def test_twenty_thousand_blocks_are_few() -> None:
     assert farthest(way_of_blocks(text, 1)[::7], way) <= TOLERANCE
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_several_depths_are_one_section_and_stretches_apart_are_several() -> None:
     points = places(*hexagon(), 0.005)
     lines = cam_program(points).splitlines()
@@ -493,7 +493,7 @@ def call(*arguments: str) -> Result:
     return CliRunner().invoke(main, ["roll", *arguments], prog_name="polarcheck")
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.usefixtures("own_folder")
 def test_the_command_writes_a_new_program_and_says_what_was_done() -> None:
     text = cam_contour(hexagon())
@@ -516,7 +516,7 @@ def test_the_command_writes_a_new_program_and_says_what_was_done() -> None:
     assert "nothing to roll" in refused.stderr
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.usefixtures("own_folder")
 def test_the_tolerance_is_in_the_units_of_the_program() -> None:
     start, pieces = hexagon()

@@ -69,7 +69,7 @@ def findings(report: FileReport) -> list[tuple[Any, ...]]:
     return [(one.rule, one.line, one.severity, one.alarm, one.count) for one in report.findings]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.one_in(21)
 @pytest.mark.parametrize(
     ("path", "machine", "name"),
@@ -227,7 +227,7 @@ def test_messages_name_the_axis(before: str, after: str, rule: str, words: str) 
     assert [one.line for one in twin.findings] == [one.line for one in report.findings]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_a_second_spindle_is_followed_by_its_name() -> None:
     """C2=10. with the profile of that spindle; its findings write the name with =."""
     program = renamed(CONTOUR.replace("A", "C"), "C2")
@@ -238,7 +238,7 @@ def test_a_second_spindle_is_followed_by_its_name() -> None:
     assert "write G28 C2=0 before" in missing.findings[0].message
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("words", ["X0 C2=0", "x0 c2=0", "X0 C2=5.", "P1 Q4", "C2=0 X0"], one_in=4)
 def test_a_named_axis_beside_the_switch(words: str) -> None:
     """Where the control takes the axes there: by name, by number, in lower case."""

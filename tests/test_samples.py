@@ -53,7 +53,7 @@ def test_report_is_the_golden_one(path: Path, name: str, snapshot: SnapshotAsser
     assert msgspec.json.format(msgspec.json.encode(report_of_sample(path))).decode() == snapshot(name=name)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(("path", "name"), zip(SAMPLES, NAMES, strict=True))
 def test_tool_center_path_is_the_golden_one(path: Path, name: str, snapshot: SnapshotAssertion) -> None:
     tables = tables_of(path.read_bytes(), **settings(path), path=path.name)
@@ -65,7 +65,7 @@ def test_tool_center_path_is_the_golden_one(path: Path, name: str, snapshot: Sna
 FAULTY = [path for path in SAMPLES if expected(path.read_text("utf-8"))]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("path", FAULTY, ids=lambda path: path.relative_to(FOLDER).as_posix(), one_in=12)
 def test_comments_that_expect_something_are_no_part_of_it(path: Path) -> None:
     text = path.read_text("utf-8")

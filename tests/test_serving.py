@@ -146,6 +146,7 @@ def test_a_saved_program_is_a_new_version_and_a_broken_one_keeps_the_last(
         visitor.ask()
 
 
+@pytest.mark.nightly
 def test_a_folder_has_an_index_and_new_programs_come_to_it(visitor: Visitor, between: Callable[..., None]) -> None:
     Path("f").mkdir()
     make(**{"f/a__nc": HEXAGON, "f/b__nc": GROOVE})
@@ -175,6 +176,7 @@ def test_a_folder_has_an_index_and_new_programs_come_to_it(visitor: Visitor, bet
     assert call("plot", "--serve", "f", *RADIUS, "-j", "1").exit_code == 0
 
 
+@pytest.mark.nightly
 def test_a_page_depends_on_drawing_offsets_and_subprograms(visitor: Visitor, between: Callable[..., None]) -> None:
     Path("subs").mkdir()
     make(a__nc=HEXAGON.replace("G40 X80.", "M98 P100\nG40 X80."), **{"subs/O0100__nc": "O0100\nM99\n"})

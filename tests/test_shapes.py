@@ -153,7 +153,7 @@ SIZES = ("across_flats", "diameter", "width", "length", "apart", "distance", "ra
 TWINS = {"turned": Twin(0.7), "mirror": Twin(mirror=True), "inch": Twin(inch=True), "steps": Twin(incremental=True)}
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("twin", TWINS.values(), ids=list(TWINS), one_in=4)
 def test_twins_have_the_same_shape(twin: Twin) -> None:
     compared = 0
@@ -199,7 +199,7 @@ def regular(sides: int, across: float, turned: float = 0.0) -> Any:
     return affinity.rotate(_cut(shapely.box(-FAR, -FAR, FAR, FAR), [across / 2] * sides), turned, origin=(0, 0))
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @settings(max_examples=25, deadline=None)
 @given(
     st.integers(3, 12), st.floats(8, 80), st.floats(0, 360), st.floats(-15, 15), st.floats(-15, 15)
@@ -214,7 +214,7 @@ def test_regular_polygons_are_told(sides: int, across: float, turned: float, x: 
     assert abs(middle - complex(x, c)) < 0.005
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @settings(max_examples=15, deadline=None)
 @given(st.floats(10, 60), st.floats(1.05, 4), st.floats(0, 180), st.floats(-9, 9))
 def test_rectangles_are_told(width: float, share: float, turned: float, aside: float) -> None:

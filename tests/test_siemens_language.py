@@ -52,7 +52,7 @@ def test_a_parameter_takes_its_value_by_equal(block: str) -> None:
     assert rules(report(block)) == ["equal-sign-missing"]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("block", ["R1=5", "R1 = -5", "R[3]=5", "R1=R2", "ROT RPL=10\nROT"])
 def test_with_equal_nothing_is_told(block: str) -> None:
     assert rules(report(block)) == []
@@ -78,7 +78,7 @@ def test_text_in_parentheses_is_told_once(before: str, count: int) -> None:
     assert (f"in {count} blocks" in finding.message) == (count > 1)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     "before",
     ["X=(R1+2)", "R1=(2+3)*4", 'MSG("(ROUGHING)")', "; (HEXAGON)", "CYCLE832(0.01,1)", "OSCTRL[Z]=(1+2,4)", "SETMS(2)"],
@@ -98,7 +98,7 @@ def test_behind_g291_and_in_the_iso_mode_it_is_a_comment() -> None:
 # ---- predefined procedures and synchronized actions ----
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     "block",
     [
@@ -125,7 +125,7 @@ def test_what_moves_no_axis_of_the_plane_is_passed_over(block: str) -> None:
         assert (rules(found), found.verdict) == ([], "pass")
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("block", "reason"),
     [
@@ -196,7 +196,7 @@ def test_a_head_with_a_letter_is_read() -> None:
 # ---- what stands before and behind the sections of a whole program ----
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     "before",
     [

@@ -29,7 +29,7 @@ def test_each_program_passes_by_its_comments_alone(program: str) -> None:
     assert {one.reason for one in found.silenced} == {"PARAMETER 5431 IS SET"}
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.usefixtures("own_folder")
 def test_the_commands_do_what_the_page_says() -> None:
     Path("programs").mkdir()

@@ -162,7 +162,7 @@ def test_every_control_is_simulated() -> None:
     assert sorted(CONTROLS) == sorted(profiles.names())
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_programs_of_posts_are_read_whole() -> None:
     """No code of theirs is unknown to the lathe, loops and subprograms included."""
     read = {program.name: steps(program.text, program.machine) for program in programs()}
@@ -170,7 +170,7 @@ def test_programs_of_posts_are_read_whole() -> None:
     assert all(done[-1].what == "end" for done in read.values())
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("seed", "target"),
     [(3, "okuma-osp"), (43, "okuma-osp"), (5, "haas-lathe"), (12, "mazak-quick-turn"), (9, "mitsubishi-m700")],

@@ -34,7 +34,7 @@ def test_there_are_enough_families_and_kinds() -> None:
     assert len({slip.name for slip in SLIPS}) >= 140
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("machine", DIALECTS, one_in=17)
 def test_sound_programs_are_silent(machine: str) -> None:
     for seed in range(4):
@@ -60,7 +60,7 @@ def test_a_sound_program_has_no_event(seed: int) -> None:
     assert not differs(outcome, outcome)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("kind", "family"),
     [

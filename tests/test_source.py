@@ -101,7 +101,7 @@ def test_line_numbers_do_not_depend_on_the_line_end(line_end: str) -> None:
     assert [source.line_of(int(start)) for start in found.words.start] == [2, 4, 4, 5]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @given(st.lists(st.sampled_from(["G1", "X1.", "", "(A)", ";"]), max_size=12), st.sampled_from(LINE_ENDS))
 @settings(deadline=None)
 def test_a_position_lies_on_its_line(lines: list[str], line_end: str) -> None:

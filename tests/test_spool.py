@@ -39,6 +39,7 @@ def spooled(found: list[tuple[FileReport, dict[int, str]]], in_memory: int) -> S
     return reports_of
 
 
+@pytest.mark.nightly
 @looped("in_memory", [0, 3, 100], one_in=3)
 def test_what_is_kept_comes_back_as_often_as_one_likes(
     found: list[tuple[FileReport, dict[int, str]]], in_memory: int

@@ -239,7 +239,7 @@ def test_size_is_bounded(block: str) -> None:
     assert short.fault.kind == "too-long"
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_size_is_bounded_where_nobody_asks_for_it() -> None:
     statement = read_statement("X1" * 20_100)
     assert len(statement.words) == 20_000

@@ -70,7 +70,7 @@ def test_where_it_does_not_say_so_the_sides_are_not_judged_and_it_is_told(machin
     assert len([entry for entry in report.not_evaluated if entry.matters]) == 1
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_without_compensation_there_is_no_side_to_ask_for() -> None:
     plain = contour().replace("G42 ", "").replace("G40 ", "G1 ")
     program = DOOSAN.format("", plain, "").replace("M35", "M176").replace("M34", "M175")
@@ -79,7 +79,7 @@ def test_without_compensation_there_is_no_side_to_ask_for() -> None:
     assert not told(report)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("between", ["", "M134\n"])
 def test_the_main_spindle_is_judged_again_once_it_is_the_c_axis(between: str) -> None:
     first = DOOSAN.format("1", contour(), "1").removesuffix("M30\n").replace("M134\n", between)
@@ -91,7 +91,7 @@ def test_the_main_spindle_is_judged_again_once_it_is_the_c_axis(between: str) ->
     assert radii == [None, 4.0]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("swap", "judged"),
     [("G14", False), ("G14\nG15", True), ("G15", True), ("G14\nG15\nG14", False), ("N5 G14 M9", False)],
@@ -104,7 +104,7 @@ def test_swapped_spindles_of_a_haas_are_told_by_name(swap: str, judged: bool) ->
     assert (report.verdict == "pass") == judged
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("machine", "feed", "engage", "plane", "on"),
     [

@@ -128,7 +128,7 @@ def warnings_of(text: str, machine: str) -> list[tuple[str, int]]:
     return [(finding.rule, finding.line) for finding in report.findings if finding.severity != "note"]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("name", list(PROGRAMS))
 def test_such_programs_are_sound_and_so_are_their_twins(name: str) -> None:
     swiss = PROGRAMS[name]
@@ -148,7 +148,7 @@ def test_what_is_made_goes_to_the_mirrored_depth(name: str) -> None:
     assert [mirrored(entry.text) for entry in made_by(tables)] == [entry.text for entry in made_by(twins)]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("kind", list(SLIPS))
 @looped("name", list(PROGRAMS))
 def test_slips_in_them_are_those_of_their_twins(name: str, kind: str) -> None:
@@ -158,7 +158,7 @@ def test_slips_in_them_are_those_of_their_twins(name: str, kind: str) -> None:
     assert warnings_of(slip.twin, "fanuc-30i") == words
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("name", list(PROGRAMS))
 def test_in_rapid_traverse_they_hit_the_bar(name: str) -> None:
     """The mill goes to the depth over the bar in rapid traverse before the mode."""

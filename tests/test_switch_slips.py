@@ -13,7 +13,7 @@ DIAMETER = {"x": "diameter"}
 UNKNOWN = "polar-switch-unknown"
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("on", "off", "line", "severity", "remedy"),
     [
@@ -97,7 +97,7 @@ M30
 """
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("on", "off", "leave", "rules"),
     [

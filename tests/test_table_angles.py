@@ -154,7 +154,7 @@ def test_a_contour_is_no_steady_way_to_a_full_turn(blocks: list[str]) -> None:
     assert moved(*blocks) == []
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("words", ["Y5. C30.", "C30. Y5.", "C30."])
 def test_the_word_that_looks_like_an_angle_is_named(words: str) -> None:
     report = report_of(f"G98\nG12.1\nG1 X10. {words} F100\nG13.1\n")

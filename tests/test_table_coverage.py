@@ -72,7 +72,7 @@ def test_the_rib_of_an_overlap_below_two_r() -> None:
     assert "go on 5 mm farther" in finding.message
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("overlap", [0, 0.5, 1, 2.5, 4, 5], one_in=20)
 @looped("side", ["G41", "G42"])
 @looped("turn", [0, 0.7, 2, math.pi / 2])
@@ -82,7 +82,7 @@ def test_ribs_by_their_overlap(overlap: float, side: str, turn: float) -> None:
     assert height(finding) == pytest.approx(rib(overlap), abs=0.005)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("count", [1, 2, 3, 4, 5], one_in=4)
 def test_ribs_beside_a_lead_of_several_blocks(count: int) -> None:
     """The rib stands at one corner alone, that of the straight lead; the other lead is round."""
@@ -109,7 +109,7 @@ def test_a_rib_of_the_second_contour_stands_where_it_is() -> None:
     assert height(finding) == pytest.approx(rib(1), abs=0.001)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("overlap", [0, 1, 3])
 def test_ribs_in_inch(overlap: float) -> None:
     [finding] = found(
@@ -122,14 +122,14 @@ def test_ribs_in_inch(overlap: float) -> None:
     assert height(finding) == pytest.approx(rib(overlap), abs=0.01)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("machine", ["fanuc-16i", "fanuc-30i", "siemens-iso", "gsk-988"])
 def test_ribs_on_other_controls(machine: str) -> None:
     said = [rule for _, rule in rules(square(1), machine=machine, changes={"limits": {"c_feed": 36000}})]
     assert said == ["material-left"]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("overlap", [5.6, 6, 6.5, 9, 15], one_in=2)
 def test_nothing_stands_after_an_overlap_of_two_r(overlap: float) -> None:
     """At 5.6 the rib is 7 micrometers high: no witness."""
@@ -162,7 +162,7 @@ def test_inside_corners_of_the_part_are_no_ribs() -> None:
     assert rules(cross) == []
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_what_is_cut_later_is_not_left() -> None:
     direct = "G42 X40. C0./C20./X-40./C-20./X40./C0./G40 X80."
     once_more = square(1) + "/G1 X80. C0./Z-2./" + direct + "/Z2."
@@ -229,7 +229,7 @@ def test_beyond_the_bar_nothing_stands() -> None:
 # ---- gaps ----
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("gap", [0.1, 1, 3, 5.5], one_in=12)
 @looped("side", ["G41", "G42"])
 @looped("turn", [0, 0.7])
@@ -257,7 +257,7 @@ def test_a_gap_in_inch() -> None:
     )
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     "contour",
     [
@@ -306,7 +306,7 @@ def test_passes_near_enough_and_rings_thicker_than_r(inner: float, loops: bool) 
     assert rules(rings(36.0, inner, loops=loops)) == []
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(("step", "leaves"), [(5.5, False), (5.9, False), (6.5, True), (8, True), (9.5, False)], one_in=3)
 def test_circles_one_in_the_other(step: float, leaves: bool) -> None:
     circles = "/".join(f"G1 G42 X{2 * size}/G3 I{-size}/G1 G40 X140." for size in (20.0 + step, 20.0))
@@ -316,7 +316,7 @@ def test_circles_one_in_the_other(step: float, leaves: bool) -> None:
         assert height(said[0]) == pytest.approx(step - 6, abs=0.01)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(("pitch", "leaves"), [(5.5, False), (7.0, True)])
 def test_a_spiral(pitch: float, leaves: bool) -> None:
     """Of half circles, inwards, with a full turn at its end."""
@@ -329,7 +329,7 @@ def test_a_spiral(pitch: float, leaves: bool) -> None:
     assert [rule for _, rule in rules(section)] == ["material-left"] * leaves
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_the_bar_ends_what_may_stand() -> None:
     """The outer pass runs beyond the bar, and there is no ring."""
     circles = "/".join(f"G1 G42 X{2 * size}/G3 I{-size}/G1 G40 X140." for size in (28.0, 20.0))
@@ -348,7 +348,7 @@ def test_the_middle_of_a_pocket_is_no_strip() -> None:
     assert rules("G1 X12. C0. F300/Z-2./G41 X20./G3 I-10./G1 G40 X12./Z2.", "1:radius=4") == []
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(("island", "leaves"), [(16.0, True), (17.0, True), (18.5, False), (13.0, False)], one_in=3)
 def test_a_ring_between_a_pocket_and_its_island(island: float, leaves: bool) -> None:
     """Neither of the two passes lies behind the other; a ramp cuts through what stays between them."""

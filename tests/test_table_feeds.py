@@ -146,7 +146,7 @@ def told(blocks: str, machine: str, system: str = "") -> list[tuple[int, str]]:
     return [(found.line, found.message) for found in report.findings if found.rule == LEFT_OVER]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("blocks", "machine", "line", "number"),
     [
@@ -178,7 +178,7 @@ def test_the_same_with_g98_and_g99_of_the_other_list_of_codes() -> None:
     assert len(told("G99 G0 X60. Z2. C0/G1 Z1. F.1/G12.1/G1 X40. F.1/C5./G13.1", M700, "A")) == 1
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("blocks", "machine"),
     [

@@ -37,7 +37,7 @@ def test_depth_in_inch() -> None:
     assert table("G20\n" + SQUARE.format("E.1", "C0")).depth[ENTRY + 1] == pytest.approx(2.54)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("second", "entry", "reasons"),
     [
@@ -56,7 +56,7 @@ def test_a_second_contour_of_a_cycle_is_told(second: str, entry: str, reasons: i
     assert (len(told), said(report)) == (reasons, [])
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("number", "written", "depth", "is_told"),
     [
@@ -218,7 +218,7 @@ CIRCLES = [
 ]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(("radius", "cutter", "start", "infeed"), CIRCLES, one_in=4)
 @looped("way", ["G3", "G2"])
 def test_passes_of_a_circle(radius: float, cutter: float, start: float, infeed: float, way: str) -> None:
@@ -232,7 +232,7 @@ def test_passes_of_a_circle(radius: float, cutter: float, start: float, infeed: 
     assert mirrored == pytest.approx(found) or cutter == 0, "R below 0 is the other side"
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(("radius", "cutter", "start", "infeed"), CIRCLES, one_in=2)
 def test_passes_of_twins(radius: float, cutter: float, start: float, infeed: float) -> None:
     """The same in inch, with numbers fine enough, and with X as a radius in the mode."""
@@ -330,7 +330,7 @@ ROUND = "C38.\nG2 X-20. R10.\nG1"
 SHARP = "C30.\nX-20.\n"
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("start", "infeed", "inner", "unfit"),
     [
@@ -363,7 +363,7 @@ def test_passes_that_do_not_fit_in_two_sections_are_two_findings() -> None:
     assert [rule for _, rule in said(report)] == ["infeed-pass-does-not-fit"] * 2
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_a_pass_does_not_fit_where_the_contour_does_not() -> None:
     """R 11 in an arc of 10 is the fault of the contour, from which that of its passes follows."""
     report = report_of(SLOT.format("120.", "4.", ROUND, "120."), "gsk-988", "2:radius=11,nose=0")

@@ -54,7 +54,7 @@ def serious(found: FileReport) -> list[tuple[int, str]]:
     return sorted((one.line, one.rule) for one in found.findings if one.severity != "note")
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("section", [SOUND[name] for name in TOLD], ids=TOLD, one_in=36)
 @looped("units", ["G21", "G20"])
 @looped("machine", ["fanuc", "fanuc-30i"])
@@ -82,7 +82,7 @@ def test_of_two_loops_the_wrong_one_is_named() -> None:
     assert serious(report(wrong)) == [(14, MIRRORED)]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_a_negative_r_is_wrong_itself_or_the_code_is() -> None:
     found = report(SOUND["square"], -4.0)
     assert serious(found) == [(7, MIRRORED)]
@@ -133,7 +133,7 @@ def test_a_slot_beside_its_walls_is_not_told() -> None:
 BENT = "G0 X100. Z2. C0/G12.1/G1 Z-5. F300/G42 X40. F200/C20./X0 C19.65/X-40. C20./C-20./X40./C0/G40 X100./Z2./G13.1"
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(("pause", "is_mirrored"), [("", True), ("M8/", True), ("M8/M9/", False), ("M8/M9/M8/", False)], one_in=4)
 def test_a_loop_that_the_control_objects_to_on_the_other_side_is_not_mirrored(pause: str, is_mirrored: bool) -> None:
     """Two blocks without a way leave the corner unknown to the control, whichever side the cutter is on."""

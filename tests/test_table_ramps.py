@@ -17,7 +17,7 @@ def lines(program: str, column: str, *tools: str, **more: object) -> list[int]:
     return (tables["trace"].blocks.line[getattr(tables["ramps"], column)] - 3).tolist()
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("program", "start_up", "cancel"),
     [
@@ -107,7 +107,7 @@ ON_INCH = ("O1\nG20 G40 G97 G98 G18\nT0101\nG0 X140. Z.1 C0\n", "1:radius=.375")
 G40_ALONE, G40_STANDING = "G40\nX140.\n", "G40 X40. C0\nX140.\n"
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("machine", ["fanuc", "turning-center", "gsk-988"], one_in=14)
 @looped(("start", "tool"), [ON_MM, ON_INCH], ids=["mm", "inch"])
 @looped("off", ["G40 X140.\n", G40_ALONE, G40_STANDING, "G40 U0\nX140.\n"])
@@ -127,7 +127,7 @@ def test_a_block_that_moves_nothing_is_no_ramp(on: str, off: str, start: str, to
     assert [found for found in report.findings if found.severity != "note"] == []
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_the_move_after_a_standing_block_is_the_ramp() -> None:
     """Of 5 mm along X, in diameters 10 mm, where 6 mm are asked for."""
     program = AROUND.format(start=ON_MM[0], on="G1 X50. F500\nG42 X50. C0\nX40.\n", off="G40 X40.\nX50.\n")
@@ -150,7 +150,7 @@ def test_a_cancel_that_never_comes(off: str, machine: str, severity: str) -> Non
     assert found == [("cancel-shorter-than-radius", severity)]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_a_cancel_too_short_is_an_error_on_every_control() -> None:
     program = AROUND.format(start=ON_MM[0], on="G1 G42 X40. F50.\n", off="G40 X45.\n")
     for machine in ("fanuc", "gsk-988"):

@@ -72,7 +72,7 @@ def test_sections_end_where_they_were_meant_to(program: str, expected: list[tupl
 CHOSEN_BACK = "O1\nT0101\nG98 G0 X60. C0 Z5.\n{}\n{}\nG1 X20. F200\n{}10.\nX60.\n{}{}\nG0 Z100.\nM30\n"
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("machine", "on", "axis", "off", "back"),
     [

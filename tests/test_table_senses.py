@@ -62,13 +62,13 @@ def test_one_of_four_corners(section: str, number: int) -> None:
     assert block.startswith("G2")
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("machine", ["fanuc-16i", "fanuc-30i", "gsk-988", "siemens-iso"], one_in=3)
 def test_on_other_controls(machine: str) -> None:
     assert [rule for _, rule, _ in told(swapped(BY_RADIUS, 2), 4, machine)] == [RULE]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(("radius", "decimals"), [(3, 3), (3, 2), (0.5, 3), (0.5, 2), (8, 3)], one_in=5)
 def test_ends_that_are_rounded(radius: float, decimals: int) -> None:
     assert told(hexagon(radius, decimals), radius / 2) == []
@@ -81,7 +81,7 @@ def test_in_inch() -> None:
     assert [rule for _, rule, _ in told(section, 0.05, head=head)] == [RULE]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("section", [swapped(BY_RADIUS, 1), swapped(BY_CENTER, 1)], ids=["R", "I J"])
 def test_a_notch_too_narrow_for_the_cutter_follows(section: str) -> None:
     [(_, rule, severity)] = told(section, 12)

@@ -21,7 +21,7 @@ def found(blocks: str, radius: float, head: str = MM, machine: str = "fanuc") ->
     return [(one.block, one.rule) for one in report.findings if one.severity == "error"]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("blocks", "radius", "head", "machine", "block"),
     [
@@ -127,7 +127,7 @@ def test_loops_that_cut_nothing_of_each_other(blocks: str, radius: float) -> Non
     assert found(blocks, radius) == []
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_a_ramp_through_the_wall_of_another_loop() -> None:
     boss = "X-30. C-40./G42 X-20. C-10./X20./C10./X-20./C-10./G40 X-30. C-40."
     other = "G42 X60. C30./X80./C40./X60./C30./G40 X60. C70."

@@ -49,13 +49,13 @@ def test_what_is_no_axis(words: str) -> None:
     assert report.findings[0].message.endswith(f"no such axis; P and Q take whole numbers from 1 to {MOST}")
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("words", ["", "P1", "Q3", "P1 Q3", "Q3 P1", "P1. Q3.", "P2", "Q2", "P3 Q1", f"P1 Q{MOST}"], one_in=2)
 def test_what_is_a_pair_of_axes(words: str) -> None:
     assert found(f"G12.1 {words}") == []
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("words", "parameters", "axis"),
     [
@@ -100,7 +100,7 @@ def test_axes_by_macro_and_in_a_second_section() -> None:
 # ---- IP ----
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("words", ["U5.", "H5.", "U0", "U5. H5.", "U-2. P1 Q3", "X0 H1."])
 def test_the_shift_is_absolute(words: str) -> None:
     report = report_of(PROGRAM.format(f"G12.1 {words}", "G13.1"), "gsk-988", TOOL)
@@ -139,7 +139,7 @@ def test_where_nothing_shifts_incremental_words_are_out_of_place(words: str) -> 
     assert (AT, "polar-shift-incremental") not in found(f"G12.1 {words}", name="fanuc")
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("words", ["P1", "Q3", "E8.", "X0", "U5.", "P1 Q3 E8."])
 def test_words_are_for_the_beginning(words: str) -> None:
     """G13.1 stands alone on this control, too."""
@@ -178,7 +178,7 @@ def test_the_four_ranges_of_the_infeed(
         assert all(found.message.endswith(TOO_LARGE.format(most)) for found in report.findings)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("increments", "program", "word", "taken"),
     [
@@ -207,7 +207,7 @@ def test_digits_below_the_increment_are_dropped(
         assert report.findings[0].message.endswith(f"is finer than the least increment, {taken}")
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_every_number_of_increments_is_taken_as_it_is() -> None:
     """None of them is taken for one with a digit too many, or cut by one, whatever binary fractions make of it."""
     for count in [*range(1, 3000, 37), 12345678, 999999999]:

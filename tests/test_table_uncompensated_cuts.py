@@ -113,7 +113,7 @@ def test_where_rapid_traverse_is_an_alarm_it_follows_from_that() -> None:
     assert [one.rule for one in finding.follows] == [RULE]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("move", "beginning", "end"),
     [
@@ -145,7 +145,7 @@ def test_without_a_contour_or_its_radius_nothing_is_said(text: str) -> None:
 OPEN = HEXAGON.removesuffix("X80. C5.")
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("blocks", "expected"),
     [

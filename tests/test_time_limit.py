@@ -116,7 +116,7 @@ BEYOND = {
 
 
 @pytest.mark.one_in(3)
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.parametrize("case", BEYOND)
 def test_a_loop_beyond_all_bounds_is_left_out_alone(case: str) -> None:
     """The other one is judged as if it stood there by itself."""
@@ -137,7 +137,7 @@ WITHOUT_MEASURE = {
 }
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("case", WITHOUT_MEASURE, one_in=3)
 def test_numbers_without_measure_leave_the_other_loop_as_it_is(case: str) -> None:
     alone = checked(in_mode([*GROOVE, "G1 X100. C0"]))
@@ -183,7 +183,7 @@ def test_only_so_many_loops_are_named(monkeypatch: pytest.MonkeyPatch) -> None:
     assert reasons[-1].blocks == 10 * reasons[0].blocks
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_walls_that_only_together_are_too_many_are_said(monkeypatch: pytest.MonkeyPatch) -> None:
     """Whether the tool fits between contours is open where they cross again and again, and nobody passes that."""
     program = FAMILIES["nested-squares"].make(200)
@@ -255,7 +255,7 @@ def test_rings_by_what_they_lie_in_or_one_by_one(family: str, monkeypatch: pytes
         assert one.symmetric_difference(other).area == pytest.approx(0, abs=1e-6)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_loops_that_begin_in_a_row_are_held_together_by_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
     """What they are cut into grows with their number, not with its square."""
     from polarcheck.geometry.polygons import faces
@@ -339,7 +339,7 @@ def test_points_are_compared_in_portions(monkeypatch: pytest.MonkeyPatch) -> Non
 
 
 @pytest.mark.one_in(6)
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.skipif(sys.platform == "win32", reason="no limit of address space there")
 @pytest.mark.parametrize(
     ("family", "moves", "reason"),
@@ -365,7 +365,7 @@ def test_a_check_stays_within_its_memory(family: str, moves: int, reason: str, t
 # ---- when nobody waits any more ----
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("turns", [0, 3, 100], one_in=5)
 @looped("program", ["G12.1\nG1 X4. F100\nG13.1\nM30\n", "#1=1\nWHILE[#1GT0]DO1\n#1=#1+1\nEND1\nM30\n"])
 def test_a_check_that_nobody_waits_for_ends_at_its_next_turn(program: str, turns: int) -> None:
@@ -402,7 +402,7 @@ GIVEN_UP = {
 }
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.one_in(4)
 @pytest.mark.parametrize(
     "share", [0.5, pytest.param(0.1, marks=pytest.mark.ci), pytest.param(0.9, marks=pytest.mark.ci)]

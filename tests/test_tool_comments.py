@@ -14,7 +14,7 @@ def lines(program: str, machine: str = "fanuc") -> list[int]:
     return [line for line, rule in said(report_of(program, machine, "7:radius=6,nose=0")) if rule == RULE]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     "comment",
     [

@@ -83,7 +83,7 @@ def test_the_nose_type_of_a_turning_tool_is_an_error_that_names_the_block() -> N
     assert found.message == ("offset 8 is set by G10 P8 R.375 Q3 in line 3 to nose type T3; for a mill it must be 0")
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("tools", [(), ("8:radius=0",), ("8:radius=.2,nose=0",)], one_in=2)
 def test_ramps_that_its_own_radius_does_not_fit(tools: tuple[str, ...]) -> None:
     """As printed the program is that of the tool center: with R .375 its ramps are too short."""
@@ -103,7 +103,7 @@ def test_the_size_adjusted_by_its_own_radius() -> None:
 # ---- which R ----
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("blocks", "radius"),
     [
@@ -154,7 +154,7 @@ def test_lengths_are_in_the_units_of_their_block() -> None:
     assert taken("#2901=.25\nT0101\nG21", head=head) == (pytest.approx(6.35), "program")
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("blocks", "expected"),
     [
@@ -296,7 +296,7 @@ def test_the_nose_type(blocks: str, nose: int) -> None:
 # ---- comments ----
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("block", ["G10 P8 R.375", "G10 P8 R.37", "G10 P10008 R.375 Q0/G10 P8 R-.005"], one_in=4)
 @looped("first", [True, False])
 def test_a_comment_that_agrees(block: str, first: bool) -> None:
@@ -307,7 +307,7 @@ def test_a_comment_that_agrees(block: str, first: bool) -> None:
         assert (said(report), report.polar_sections[0].radius_source) == ([], "program")
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("first", [True, False])
 @looped("tools", [(), ("8:radius=.375",)])
 def test_a_comment_that_contradicts(first: bool, tools: tuple[str, ...]) -> None:
@@ -384,7 +384,7 @@ def test_offsets_that_keep_no_size(block: str) -> None:
     assert said(report) == []
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_the_size_of_turned_diameters_and_on_other_machines() -> None:
     turned = "O1\nG20\nG10 P8 U-.005\nT0808\nG0 X2.\nG1 Z-1. F.01\nM30\n"
     assert "size-by-x-offset" not in [found.rule for found in report_of(turned, "turning-center").findings]
@@ -396,7 +396,7 @@ def test_the_size_of_turned_diameters_and_on_other_machines() -> None:
 # ---- the wear in X of the job ----
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("table", "block", "expected"),
     [
@@ -432,7 +432,7 @@ def test_the_wear_in_x_of_a_job() -> None:
     assert not report_of(guide(), "fanuc", job={"units": "mm", "tools": tools}).findings
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("setting", ["G10 P#500 R.3", "#[#500+2200]=.3", "G10 L12 P#500 R4."])
 def test_an_offset_whose_number_is_not_known(setting: str) -> None:
     """It may be the one in force: nobody can say that its R is as the job gives it."""
@@ -453,7 +453,7 @@ def test_a_variable_whose_number_is_known_by_the_job_is_no_question() -> None:
     assert not [entry for entry in report.not_evaluated if entry.matters]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("calls", "number"),
     [

@@ -91,7 +91,7 @@ def test_what_says_nothing_is_left_out(tmp_path: Path) -> None:
     assert run("--format", "table", "--path", "tool", str(SAMPLES.parent / "docs" / "trace.md")) == ""
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.usefixtures("on_terminal")
 def test_a_terminal_shows_what_there_is_room_for(monkeypatch: pytest.MonkeyPatch) -> None:
     before = 0

@@ -49,7 +49,7 @@ def test_the_owner_says_the_sense_of_c(changes: dict[str, Any]) -> None:
     np.testing.assert_allclose([moves.c_angles[0][0], *moves.c_angles[1]], [90, 0, 90], atol=1e-9)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("between", "of_plane", "angle", "angle_of_other_sense"),
     [
@@ -260,7 +260,7 @@ def test_a_tool_is_taken_in_the_mode_without_compensation(tool: str) -> None:
     assert of_two_tools(tool, "TRAFOOF\nG0 X50\nTRANSMIT\nG0 X30 Y0\nTRAFOOF") == []
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("off", "leave", "cancel"),
     [

@@ -49,7 +49,7 @@ def hexagon(spigot: str, x: str = "46.", z: str = "-6.") -> str:
 INSIDE = [("approach-inside-stock", "error")]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("spigot", list(SPIGOTS), one_in=18)
 @looped("stock", [{"diameter": 50}, {"diameter": 56, "face": 1}, {"hexagon": 44}, {"diameter": 50, "bore": 8}, {}])
 def test_the_approach_clears_what_was_turned(spigot: str, stock: dict[str, float]) -> None:
@@ -104,7 +104,7 @@ POCKET = "G0 Z{z}/C0/X{x}/G12.1/G1 X10. C3. F500/Z-3. F40/X8. F80/X10./Z2. F500/
 FLAT = "G0 Z2./C0/X{x}/G12.1/G1 X{out} C0 F1500/C24./Z-3. F300/X20. F200/C-24./X{out} F1500/Z2./G13.1/G0 Z50./M5/M30"
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("x", ["34.", "43.6", "20."])
 @looped("z", ["2.", "20."])
 def test_above_the_face_nothing_is_hit(x: str, z: str) -> None:
@@ -117,7 +117,7 @@ def test_above_the_face_nothing_is_hit(x: str, z: str) -> None:
 SLOT = "X60. C{c}/Z-4. F500/X{end} F90/Z2. F1500/"
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("cs", [("6.",), ("6.", "-6."), ("-6.", "6."), ("6.", "0", "-6."), ("2.", "-2.")])
 @looped("end", ["14.", "20.", "0"])
 def test_slots_that_are_lifted_out_of_are_sound(cs: tuple[str, ...], end: str) -> None:
@@ -134,7 +134,7 @@ def test_a_flat_that_ends_inside_is_told(after: str) -> None:
     assert told(program.format(c="-2."), 3, diameter=40) == [("pass-ends-inside-bar", "warning")]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("far", ["-112.", "112."])
 def test_a_point_far_outside_the_bar_is_told(far: str) -> None:
     """The last word of a flat, of a bar of 46."""
@@ -147,7 +147,7 @@ def test_a_point_far_outside_the_bar_is_told(far: str) -> None:
         assert told(start + flat.format(near=near, side=side, far=far) + end, 3, **stock) == [("cut-in-air", "warning")]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_a_contour_that_comes_round_ends_inside_the_bar_and_leaves_nothing() -> None:
     """It ends behind its own first cut, nearer to the center than the rim of the bar."""
     contour = (
@@ -200,7 +200,7 @@ def test_a_slip_against_the_metal_is_told(kind: str) -> None:
     assert report_words(next(slip for slip in slips if slip is not None)) != []
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("kind", "seed", "rule"),
     [

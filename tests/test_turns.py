@@ -22,6 +22,7 @@ SAMPLES = ROOT / "sample_programs"
 RULES = [rule for rule in load_all().values() if not rule.is_advice]
 
 
+@pytest.mark.nightly
 @looped("path", sorted(SAMPLES.rglob("*.nc")), one_in=24)
 def test_what_is_read_behind_the_report_is_made_again(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     data = path.read_bytes()

@@ -29,7 +29,7 @@ HIDING: list[tuple[str, str, str]] = [
 ]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(("contour", "slips"), PAIRS)
 def test_each_of_two_wrong_words_is_told_with_its_value(contour: list[str], slips: Slips) -> None:
     written = [slips.get(line, (line, ""))[0] for line in contour]

@@ -73,7 +73,7 @@ def test_what_an_unknown_section_would_make_is_no_fault_elsewhere(seed: int, mac
         ), text
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("seed", range(700), one_in=140)
 def test_a_check_never_passes_and_names_no_other_fault(seed: int) -> None:
     machine, tools, _, changed = programs_of(seed)
@@ -83,7 +83,7 @@ def test_a_check_never_passes_and_names_no_other_fault(seed: int) -> None:
         assert (report.verdict, found) == ("unverified", []), text
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("seed", range(120), one_in=120)
 def test_no_comparison_says_the_same_and_no_rewriter_writes(seed: int, tmp_path: Path) -> None:
     machine, tools, sound, changed = programs_of(seed)

@@ -87,7 +87,7 @@ def hexagon_of(control: str, *changes: tuple[str, str]) -> str:
 OF_SYSTEM_A = ("step of the depth", "G50")
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("control", "name"),
     [pair for pair in itertools.product(CONTROLS, UNKNOWN) if pair[0] != "mazak-eia" or pair[1] not in OF_SYSTEM_A],
@@ -101,7 +101,7 @@ def test_a_check_never_passes_and_says_which_variable(control: str, name: str) -
     assert any("#500" in reason or "sets X to a value that is not known" in reason for reason in told)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(("control", "name"), [*itertools.product(CONTROLS, HARMLESS)])
 def test_what_no_section_rests_on_has_no_weight(control: str, name: str) -> None:
     report = report_of(hexagon_of(control, HARMLESS[name]), control, CUTTER)
@@ -109,7 +109,7 @@ def test_what_no_section_rests_on_has_no_weight(control: str, name: str) -> None
     assert [entry for entry in report.not_evaluated if entry.matters] == []
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("name", UNKNOWN)
 def test_with_its_value_the_program_is_judged(name: str) -> None:
     """The values that the words had, or 1 for a code: nothing is left to be told of a variable."""
@@ -140,7 +140,7 @@ def write(folder: Path, name: str, program: str) -> str:
 OPTIONS = ("--machine", "fanuc-30i", "--tool", CUTTER, "--no-config")
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("name", UNKNOWN, one_in=11)
 def test_no_comparison_says_the_same_metal(name: str, tmp_path: Path) -> None:
     program = hexagon(UNKNOWN[name])
@@ -158,7 +158,7 @@ def test_no_comparison_says_the_same_metal(name: str, tmp_path: Path) -> None:
         assert "not compared, because" in result.stdout
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("name", UNKNOWN, one_in=5)
 def test_no_rewriter_writes(name: str, tmp_path: Path) -> None:
     file = write(tmp_path, "a", hexagon(UNKNOWN[name]))
@@ -183,7 +183,7 @@ def test_a_system_variable_of_another_tool_has_no_weight() -> None:
     assert report.verdict == "pass"
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("name", [*BEHIND, *OF_VARIABLES], one_in=5)
 def test_no_comparison_says_the_same_of_two_variables(name: str, tmp_path: Path) -> None:
     program = hexagon({**BEHIND, **OF_VARIABLES}[name])
@@ -195,7 +195,7 @@ def test_no_comparison_says_the_same_of_two_variables(name: str, tmp_path: Path)
     assert "the same but for block numbers" in CliRunner().invoke(main, ["compare", *OPTIONS, old, same]).stdout
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("name", [name for name in BEHIND if name not in ("calculated", "C")])
 def test_the_same_variable_is_the_same_value(name: str, tmp_path: Path) -> None:
     """A statement that no value rests on, and that only one of both has, changes nothing."""
@@ -212,7 +212,7 @@ def test_a_comparison_tells_what_a_system_variable_is_set_to(tmp_path: Path) -> 
     assert (result.exit_code, "#5221=1 has become #5221=2" in result.stdout) == (1, True)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("word", ["H#501", "F#501", "C[#501]"])
 def test_a_number_of_a_variable_is_no_number(word: str, tmp_path: Path) -> None:
     block = {"H": "G28 H#501", "F": "G1 X58. F#501", "C": "G0 C[#501]"}[word[0]]
@@ -255,7 +255,7 @@ FLATS = (
 )
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(("control", "word"), [*itertools.product(("fanuc-30i", "gsk-988", "doosan"), ("C90.", "G13.1"))])
 def test_what_lies_between_two_sections_is_no_fault_of_either(control: str, word: str) -> None:
     engaged = FLATS.replace("G28 H0", "M35/G28 H0") if control == "doosan" else FLATS

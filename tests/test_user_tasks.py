@@ -99,7 +99,7 @@ SIMULATED = {
 }
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("body", SIMULATED, one_in=18)
 def test_it_is_simulated(body: str) -> None:
     report, trace = run(body)
@@ -149,7 +149,7 @@ NAMED = {
 }
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("body", NAMED, one_in=6)
 def test_it_is_named_where_it_is_not_simulated(body: str) -> None:
     report, _ = run(body)
@@ -209,7 +209,7 @@ def test_a_word_takes_the_larger_of_two_arcs(arc: str, sweep: int) -> None:
     assert told == ["warning"] * (sweep == 180)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("body", "rule"),
     [
@@ -309,7 +309,7 @@ FANUC = CONTOUR.format(
 )
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("side", ["G41", "G42"], one_in=2)
 @looped("radius", ["0", "4"])
 def test_a_program_and_its_twin_have_one_tool_center_path(side: str, radius: str) -> None:
@@ -334,7 +334,7 @@ def test_the_direction_of_the_new_axis_turns_the_whole_plane() -> None:
 # ---- hostile files ----
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     "program",
     [

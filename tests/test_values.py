@@ -149,7 +149,7 @@ def shown(*arguments: str) -> Any:
     return json.loads(CliRunner().invoke(main, arguments, catch_exceptions=False).stdout)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.parametrize(
     ("machine", "named"), [("fanuc-30i", ("fanuc-30i", None)), ("lathes/nl2000.toml", ("nl2000", "lathes/nl2000.toml"))]
 )

@@ -55,7 +55,7 @@ def deselected(report: dict[str, Any]) -> list[str]:
 
 
 @pytest.mark.one_in(12)
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.parametrize(
     ("options", "code"),
     [
@@ -121,7 +121,7 @@ def test_a_program_with_an_error_does_not_pass_without_its_rule(options: str) ->
     assert check("a.nc", *options.split())["files"][0]["verdict"] == "unverified"
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_rules_without_weight_are_no_matter() -> None:
     make(a__nc=GOOD)
     for options in ("--ignore start-up-without-move", "--ignore size-by-x-offset", "--severity overcut=error"):
@@ -237,7 +237,7 @@ def test_warnings_are_counted_over_the_programs_that_share_the_limit() -> None:
 # ---- what decided ----
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_reports_say_what_decided() -> None:
     make(f"strict = true\n{JOB}", a__nc=GOOD)
     settings = check(
@@ -278,7 +278,7 @@ def test_reports_say_what_decided() -> None:
         )
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_files_with_settings_of_their_own_say_them() -> None:
     for folder, more in (("one", ""), ("two", "fail_on = 'never'\n")):
         Path(folder).mkdir()
@@ -299,7 +299,7 @@ def test_files_with_settings_of_their_own_say_them() -> None:
     assert [line["settings"]["fail_on"] for line in lines if line["type"] == "file"] == ["warning", "never"]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_a_file_and_its_machine_have_a_hash() -> None:
     import hashlib
 
@@ -313,7 +313,7 @@ def test_a_file_and_its_machine_have_a_hash() -> None:
     assert check("a.nc", "--ignore", "start-up-without-move")["files"][0]["profile_sha256"] == same
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_reports_name_the_doubtful_keys_that_they_rest_on() -> None:
     profile = "inherits = 'fanuc-30i'\n[control]\nx = { value = 'diameter', source = 'GUESS', doubtful = true }\n"
     codes = "[m_codes]\nlive_tool_on = { value = ['M133'], source = 'GUESS', doubtful = true }\n"

@@ -17,7 +17,7 @@ def section(switch: str, address: str, increment: str) -> str:
     return f"{switch}\nG17\n{CONTOUR.format(a=address, i=increment)}"
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("switch", "address", "increment"),
     [
@@ -77,7 +77,7 @@ def test_a_message_names_the_word_that_would_take_the_address() -> None:
     ]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("word", ["D1 E=A", "D0 E=B", "D2 E=C", "D9"])
 @looped(("address", "increment"), [("C", "H"), ("Y", "V")])
 def test_a_mode_that_is_not_simulated_is_named_and_not_judged(word: str, address: str, increment: str) -> None:

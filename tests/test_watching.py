@@ -149,6 +149,7 @@ def test_a_first_run_that_cannot_begin_ends_it() -> None:
     assert "watching" not in told
 
 
+@pytest.mark.nightly
 def test_only_what_has_changed_is_checked() -> None:
     Path("f/g").mkdir(parents=True)
     Path("subs").mkdir()

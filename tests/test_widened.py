@@ -74,6 +74,7 @@ FAMILIES = {
 }
 
 
+@pytest.mark.nightly
 @looped("family", FAMILIES, one_in=14)
 @looped("radius", [0.4, 4.0, 25.0])
 def test_it_is_the_union_of_its_widened_chords(family: str, radius: float) -> None:
@@ -126,6 +127,7 @@ def test_what_is_run_again_costs_nothing(monkeypatch: pytest.MonkeyPatch) -> Non
     assert again == once
 
 
+@pytest.mark.nightly
 def test_a_circle_costs_few_points(monkeypatch: pytest.MonkeyPatch) -> None:
     """Widened chord by chord a circle would have thousands of points for each of its chords."""
     for radius in (5.0, 127.0):

@@ -46,7 +46,7 @@ PROGRAMS = [
 ]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(("name", "program", "rule"), PROGRAMS)
 def test_one_finding_names_the_machine(name: str, program: str, rule: str) -> None:
     report = report_of(program)
@@ -56,7 +56,7 @@ def test_one_finding_names_the_machine(name: str, program: str, rule: str) -> No
     assert (report.verdict, report.not_evaluated, report.looked_at) == ("fail", [], [])
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(("name", "program"), [(name, program) for name, program, _ in PROGRAMS], one_in=9)
 def test_a_new_job_names_the_same_machine(tmp_path: Path, name: str, program: str) -> None:
     path = tmp_path / "a.nc"
@@ -65,7 +65,7 @@ def test_a_new_job_names_the_same_machine(tmp_path: Path, name: str, program: st
     assert (found.polar, found.machine) == ([str(path)], name)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(("name", "program", "rule"), PROGRAMS, one_in=4)
 def test_a_lathe_that_is_chosen_is_checked_as_such(name: str, program: str, rule: str) -> None:
     of_own, of_default = report_of(program, name), report_of(program, job={"machine": "fanuc"})

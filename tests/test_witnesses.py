@@ -74,7 +74,7 @@ def slipped(program: str, before: str, after: str) -> str:
     return program.replace(before, after, 1)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("program", "before", "after", "line", "rule"),
     [

@@ -71,7 +71,7 @@ WORDS = st.tuples(
 )
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @given(st.lists(WORDS, max_size=20))
 @settings(max_examples=100, deadline=None)
 def test_words_are_read_back_exactly(parts: list[tuple[str, str, str, str, str, str]]) -> None:
@@ -347,7 +347,7 @@ def test_percent_inside_a_block_ends_what_is_read_of_it() -> None:
     assert in_text(text, text.strays) == ["%"]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_a_file_of_many_tape_marks_is_one_program() -> None:
     text = text_of("%\nsome text\n" * 10_001)
     assert not len(text.outside)

@@ -70,7 +70,7 @@ def assert_words(blocks: tuple[str, ...], name: str, target: str, texts: str) ->
             assert is_axis or has_word(word, texts), f"{name} to {target}: {word} of {block} is lost"
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.one_in(18)
 @pytest.mark.parametrize("name", NAMES)
 def test_each_word_of_a_section_is_in_the_result(name: str) -> None:
@@ -91,7 +91,7 @@ def test_each_word_of_a_section_is_in_the_result(name: str) -> None:
     assert written_for or name in ("siemens-transmit", "fagor-8055t")
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.one_in(18)
 @pytest.mark.parametrize("name", NAMES)
 def test_what_a_macro_or_the_machine_takes_moves_nothing(name: str) -> None:

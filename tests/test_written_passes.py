@@ -90,6 +90,7 @@ def test_of_two_passes_the_one_that_lacks_a_word_is_wrong() -> None:
     assert different(text) == {7: 15}
 
 
+@pytest.mark.nightly
 @looped(("old", "line"), [("X-36.2", 25), ("X40. C-22.9", 27)])
 def test_increments_in_one_pass_are_told_by_the_others(old: str, line: int) -> None:
     text = program(old, f"G91 {old}")
@@ -137,6 +138,7 @@ def test_a_side_that_turns_those_beside_it_is_a_mistake(
     assert found == ["passes-differ"] * is_told
 
 
+@pytest.mark.nightly
 def test_an_arc_of_nearly_half_a_turn_has_the_r_that_it_needs() -> None:
     """The rounding of its ends shifts its center by 0.1 mm off that of the other arc."""
     contour = "C7.058\nG3 X1.984 C15.468 R15.5\nG1 X-27.784 C6.875\nG3 X27.6 C-7.058 R15.5\nG1 C0\n"
