@@ -4,8 +4,7 @@ set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 folder=$(mktemp -d); trap 'rm -rf "$folder"' EXIT; cd "$folder"
 . "$here/unpack_freecad"
-sed '/^class Operation/,$d' post.py > run.py
-cat >> run.py <<'END'
+run_freecad <<'END'
 sys.path.append(usr + "lib/freecad-python3/Mod")
 import Import
 
@@ -44,4 +43,3 @@ for what, blocks, entities, seen, right in (
     print(f"{what}: {found}, {right}")
     assert found == seen, "changed"
 END
-/usr/bin/python3 -W ignore run.py 2> messages || { cat messages; exit 1; }

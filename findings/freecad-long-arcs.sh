@@ -4,8 +4,7 @@ set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 folder=$(mktemp -d); trap 'rm -rf "$folder"' EXIT; cd "$folder"
 . "$here/unpack_freecad"
-sed '/^class Operation/,$d' post.py > run.py
-cat >> run.py <<'END'
+run_freecad <<'END'
 import PathScripts.PathGeom as PathGeom
 
 print("FreeCAD 0.20.2, edges of radius 10 from (10, 0): length and middle")
@@ -21,4 +20,3 @@ for command, seen in (
     print(command, found)
     assert found == seen, "changed"
 END
-/usr/bin/python3 -W ignore run.py 2> messages || { cat messages; exit 1; }

@@ -1,17 +1,10 @@
 #!/bin/bash
 # PyPI viaconstructor 0.7.0, its HP-GL input: an arc (AA, AR) is drawn on another side of its circle, with a line to where it begins: from (10, 0) by 90 degrees about 0 it runs from (0, -10) to (10, 0); circles (CI) are left out without a word.
 set -eu
+here=$(cd "$(dirname "$0")" && pwd)
 folder=$(mktemp -d); trap 'rm -rf "$folder"' EXIT; cd "$folder"
-python3 -m venv python
-python/bin/pip install -q --disable-pip-version-check ezdxf==1.4.5 2> /dev/null
-python/bin/pip install -q --disable-pip-version-check --no-deps viaconstructor==0.7.0 2> /dev/null
-cat > run.py <<'END_OF_SCRIPT'
-import contextlib
-import io
-import sys
-from unittest.mock import MagicMock
-
-sys.modules["setproctitle"] = MagicMock()
+. "$here/unpack_viaconstructor"
+run_viaconstructor <<'END'
 from viaconstructor.input_plugins.hpglread import DrawReader
 
 print("viaconstructor 0.7.0: the first line, and where the drawing ends")
@@ -30,5 +23,4 @@ for plot, seen in (
     corners = [(round(float(x)) + 0, round(float(y)) + 0) for x, y, *_ in corners]
     print(plot, corners)
     assert corners == seen, "changed"
-END_OF_SCRIPT
-python/bin/python run.py
+END

@@ -1,19 +1,11 @@
 #!/bin/bash
 # PyPI viaconstructor 0.7.0, its DXF input: in a mirrored block the lines are mirrored and the arcs are not; the same with an LWPOLYLINE seen from below (extrusion 0, 0, -1), which falls apart.
 set -eu
+here=$(cd "$(dirname "$0")" && pwd)
 folder=$(mktemp -d); trap 'rm -rf "$folder"' EXIT; cd "$folder"
-python3 -m venv python
-python/bin/pip install -q --disable-pip-version-check ezdxf==1.4.5 2> /dev/null
-python/bin/pip install -q --disable-pip-version-check --no-deps viaconstructor==0.7.0 2> /dev/null
-cat > run.py <<'END_OF_SCRIPT'
-import contextlib
-import io
-import sys
-from unittest.mock import MagicMock
-
+. "$here/unpack_viaconstructor"
+run_viaconstructor <<'END'
 import ezdxf
-
-sys.modules["setproctitle"] = MagicMock()
 from viaconstructor.input_plugins.dxfread import DrawReader
 
 QUARTER = 0.41421356237309503
@@ -59,5 +51,4 @@ for side, seen in (
 ):
     print("LWPOLYLINE, an arc to (10, 10) and a line to (20, 0), extrusion", side, ends(polyline))
     assert ends(polyline) == seen, "changed"
-END_OF_SCRIPT
-python/bin/python run.py
+END

@@ -151,8 +151,7 @@ def _explained(
                 edits += explanation.edits
         except TooHardError:
             pass  # what was found before stands
-    stated = [part for finding in findings if is_told(finding) for part in (finding, *finding.follows)]
-    lines = {finding.line for finding in stated}
+    lines = {part.line for finding in findings if is_told(finding) for part in (finding, *finding.follows)}
     unexplained = []
     for rows, correction in less_regular(engine):
         if lines.isdisjoint(trace.blocks.line[rows[0] : rows[-1] + _AROUND].tolist()):

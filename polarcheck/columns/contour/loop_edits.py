@@ -93,9 +93,8 @@ def _of_axis(trace: Trace, loop: WrittenLoop, number: int) -> Iterator[Edit]:
     for corner, word in enumerate(axis.word.tolist()):
         if word < 0:
             if is_open and corner and other.is_step[corner] and other.word[corner] >= 0:
-                is_letter = parts_of(trace.run.written(int(other.word[corner])))[0].strip(
-                    "="
-                ) == other.step_address.strip("=")
+                letter, _ = parts_of(trace.run.written(int(other.word[corner])))
+                is_letter = letter.strip("=") == other.step_address.strip("=")
                 value = _rounded(gap / float(axis.scale[corner]), axis, other)
                 text = f"{axis.step_address if is_letter else axis.address}{plain_number(value)}"
                 yield Edit("missing", corner, (), text, "a word is missing", _OF_BLOCK, number, value)

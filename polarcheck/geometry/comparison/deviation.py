@@ -117,11 +117,11 @@ def difference(
     the next.
     """
     rounds = rounds_of(drawn, part.way, tolerance)
-    places, outside, has_gaps = _compared(part, drawn, rounds, tolerance)
+    places, outside, skips_gaps = _compared(part, drawn, rounds, tolerance)
     if np.isfinite(metal):
         between = _between_walls(part, drawn, metal)[part.way.of[part.way.at(places[0])[1]]]
         places = places[0], places[1] & ~between
-    first = _extremes(part.way, lambda points: _from_part(part, drawn, points, has_gaps), places)
+    first = _extremes(part.way, lambda points: _from_part(part, drawn, points, skips_gaps), places)
     of_part = _difference(part, first, lambda points: part.way.of[part.way.nearest(points)[2]])
     of_part = of_part._replace(turned=rounds.turned_radius, is_broken=rounds.is_broken, outside=outside)
     of_part = of_part._replace(is_beyond=_lies_beyond(drawn, part.bar, tolerance))
@@ -159,9 +159,9 @@ def _within(polygon: Any, points: Points) -> Mask:
     return np.asarray(shapely.contains_xy(polygon, points.real, points.imag))
 
 
-def _from_part(part: MachinedPart, drawn: MeasuredPath, points: Points, has_gaps: bool) -> Floats:
+def _from_part(part: MachinedPart, drawn: MeasuredPath, points: Points, skips_gaps: bool) -> Floats:
     far, closest, _ = drawn.nearest(points)
-    if has_gaps:
+    if skips_gaps:
         far = np.where(_is_in_gap(drawn, closest, far), 0, far)
     return np.where(_within(part.polygon, closest), far, -far)
 
@@ -197,8 +197,8 @@ def _compared(
     compared &= ~_is_in_gap(drawn, closest, far)
     if np.isinf(min(turned, part.bar)):
         compared &= ~_leading(part, which, far)
-    has_places = bool(compared.any())
-    return (along, compared if has_places else size <= part.bar + _ON_CIRCLE), outside, has_places
+    skips_gaps = bool(compared.any())
+    return (along, compared if skips_gaps else size <= part.bar + _ON_CIRCLE), outside, skips_gaps
 
 
 def _between_walls(part: MachinedPart, drawn: MeasuredPath, metal: float) -> Mask:
