@@ -178,6 +178,15 @@ def test_a_section_that_is_mended_says_nothing_of_another_one_that_breaks(other:
     assert "1 known finding no longer occurs: polar-switched-in-offset-mode in a.nc" in result.stderr
 
 
+def test_of_several_sections_one_that_breaks_is_told_though_another_one_is_mended() -> None:
+    create(a=program(open_ended(60), open_ended(66, SOUND), open_ended(72)))
+    write(a=program(open_ended(60), open_ended(66), open_ended(72, SOUND)))
+    (message,) = told()
+    assert "worse than in the baseline: now in line 23, too" in message
+    write(a=program(open_ended(60, SOUND), open_ended(66, SOUND), open_ended(72)))
+    assert told() == []
+
+
 @pytest.mark.parametrize("name", ["O7777", "O1005"], ids=["new name", "same name"])
 def test_a_program_does_not_inherit_the_silence_of_another(name: str) -> None:
     create(O1005=program(open_ended(60)))

@@ -6,6 +6,7 @@ import re
 import zlib
 from bisect import bisect_right
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from itertools import chain
 from typing import TYPE_CHECKING
 
 import msgspec
@@ -27,6 +28,8 @@ if TYPE_CHECKING:
     from polarcheck.checking.engine import Listed
 
 
+#: The span of rules with one finding for a program.
+_PROGRAM = "program"
 #: The most hashes of an outline: of a longer file a part of the blocks is listed.
 MOST = 2000
 #: Larger files have no outline [bytes].
@@ -48,8 +51,9 @@ def with_outline(report: FileReport, runs: Sequence[tuple[str, Tables]]) -> File
     texts: list[Text] = [tables["text"] for _, tables in first_runs(runs)]
     if not report.findings or len(texts[0].source.data) > _LARGEST:
         return report
-    of_file = outline(_without_comments(texts), _lines(report.findings))
-    return msgspec.structs.replace(report, outline=msgspec.structs.replace(of_file, cuts=cuts(runs)))
+    lines = _lines_of_programs(runs)
+    of_file = outline(_without_comments(texts), chain(_lines(report.findings), *lines.values()))
+    return msgspec.structs.replace(report, outline=msgspec.structs.replace(of_file, cuts=cuts(runs), lines=lines))
 
 
 def outline(text: str, lines: Iterable[int], most: int = MOST) -> Outline:
@@ -115,6 +119,26 @@ def _lines(findings: Iterable[Finding]) -> Iterator[int]:
             yield finding.section_line
 
 
+def _lines_of_programs(runs: Iterable[tuple[str, Tables]]) -> dict[str, list[int]]:
+    """Return all lines of the findings that a program has once, by Outline.key."""
+    rules = load_all()
+    lines: dict[str, set[int]] = {}
+    for _, tables in runs:
+        listed: dict[str, Listed] = tables.get("listed", {})
+        for name in [name for name in listed if rules[name].once == _PROGRAM]:
+            of_hits = tables["trace"].blocks.line[places.rows(rules[name].over, tables)[listed[name].index]]
+            for number, finding in enumerate(listed[name].findings):
+                for key in _keys(finding, tables):
+                    lines.setdefault(key, set()).update(of_hits[listed[name].finding == number].tolist())
+    return {key: sorted(of_finding) for key, of_finding in lines.items()}
+
+
+def _keys(finding: Finding, tables: Tables) -> Iterator[str]:
+    """Yield the keys of a finding as it is reported in the file."""
+    for reported in in_the_file([finding], tables["trace"], lambda answered, _: answered, tables.get("rows_in_calls")):
+        yield Outline.key(reported)
+
+
 def _depth(trace: Trace) -> Floats:
     """Z behind each row, with its sign turned [mm]; NaN on the sub spindle, whose part may lie on either side."""
     return np.where(trace.modal.on_sub_spindle, np.nan, -trace.path.z)
@@ -166,5 +190,4 @@ def _of_rule(listed: Listed, over: str, tables: Tables) -> Iterable[tuple[str, d
         np.fmax.at(numbers[name], listed.finding, column(trace)[rows])
     for number, finding in enumerate(listed.findings):
         values = {name: float(column[number]) for name, column in numbers.items() if not np.isnan(column[number])}
-        for reported in in_the_file([finding], trace, lambda answered, _: answered, tables.get("rows_in_calls")):
-            yield Outline.key(reported), values
+        yield from ((key, values) for key in _keys(finding, tables))

@@ -351,12 +351,14 @@ class Outline(msgspec.Struct, frozen=True):
     place_of_line: for lines of findings, and of the sections that they stand in, the index of the hash of the block
     there, or of the last one that is listed before it, -1 for none. Lines without a block, as of a comment, are absent.
     cuts: by `key`, for findings of rules that are `gouges`, the lowest Z and the highest F of their blocks, if known.
+    lines: by `key`, for findings that a program has once, all lines that they stand for.
     """
 
     hashes: list[int]
     of: int
     place_of_line: dict[int, int]
     cuts: dict[str, dict[str, float]] = {}
+    lines: dict[str, list[int]] = {}
 
     @staticmethod
     def key(finding: Finding) -> str:

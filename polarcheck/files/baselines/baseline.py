@@ -309,6 +309,7 @@ def _brought_up(entry: Entry, file: str, both: Versions | None) -> Entry:
             msgspec.structs.replace(
                 location,
                 at=None if location.at is None else both.now(location.at),
+                also=[now for at in location.also if (now := both.now(at)) is not None],
                 section=None if location.section is None else both.now(location.section),
             )
             for location in places

@@ -41,15 +41,22 @@ class Location(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
     Where a known finding stands, and how bad it is.
 
     at: index of its block among the blocks of the program; null for one that stands in no block.
+    also: those of all its blocks, of a finding that its program has once and that stands for several.
     section: index of the block that begins its section, where one finding stands for all blocks of a section.
     blocks: how many blocks it stands for; 0 if that does not count.
     values: the numbers that can grow worse [mm, deg, min]; those of findings that follow behind their rule (rule.name).
     """
 
     at: int | None = None
+    also: list[int] = []
     section: int | None = None
     blocks: int = 0
     values: dict[str, float] = {}
+
+    @property
+    def all_at(self) -> list[int]:
+        """The indices of all its blocks; empty for one that stands in no block."""
+        return self.also or ([] if self.at is None else [self.at])
 
 
 class Entry(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_defaults=True):

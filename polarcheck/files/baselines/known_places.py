@@ -215,7 +215,13 @@ def _of_entry(
         for number, finding in findings.items():
             ats = [*islice((index for index in fitting.get(number, ()) if index in places), _TRIED)]
             if number in unmatched and ats:
-                grown = {index: growth(entry, places[index], finding, outline) for index in ats}
+                grown = {
+                    index: [
+                        *growth(entry, places[index], finding, outline),
+                        *_elsewhere(places[index], both, finding, outline),
+                    ]
+                    for index in ats
+                }
                 index = min(ats, key=lambda index: bool(grown[index]))
                 yield number, Match(entry, index, grown[index])
                 del places[index], unmatched[number]
@@ -230,7 +236,7 @@ def _pairings(entry: Entry, both: Versions | None) -> Iterator[_Way]:
         number: [
             index
             for index in fitting
-            if (where := places[index].at) is None or both.stays(where, findings[number].line)
+            if not places[index].all_at or any(both.stays(at, findings[number].line) for at in places[index].all_at)
         ]
         for number, fitting in _aligned(both, places, findings).items()
     }
@@ -251,9 +257,26 @@ def _pairings(entry: Entry, both: Versions | None) -> Iterator[_Way]:
 
 def _aligned(both: Versions, places: Mapping[int, Location], findings: Mapping[int, Finding]) -> dict[int, list[int]]:
     return _by_index(
-        {index: {None} if location.at is None else both.targets(location.at) for index, location in places.items()},
+        {index: _targets(both, location) or {None} for index, location in places.items()},
         {number: both.target(finding.line) for number, finding in findings.items()},
     )
+
+
+def _targets(both: Versions, location: Location) -> set[int | None]:
+    return {target for at in location.all_at for target in both.targets(at)}
+
+
+def _elsewhere(
+    location: Location, both: Versions | None, finding: Finding, outline: Outline | UnsetType
+) -> Iterator[str]:
+    """Say in which line a finding that its program has once is new."""
+    if both is None or not location.also or not isinstance(outline, Outline):
+        return
+    targets = _targets(both, location)
+    for line in outline.lines.get(Outline.key(finding), ()):
+        if both.target(line) not in targets and not any(both.has_moved(at, line) for at in location.also):
+            yield f"now in line {line}, too"
+            return
 
 
 def _by_index(places: Mapping[int, Iterable[int | None]], findings: Mapping[int, int | None]) -> dict[int, list[int]]:
@@ -272,7 +295,7 @@ def _moved(both: Versions, places: Mapping[int, Location], findings: Mapping[int
         number: [
             index
             for index, location in places.items()
-            if location.at is not None and both.has_moved(location.at, finding.line)
+            if any(both.has_moved(at, finding.line) for at in location.all_at)
         ]
         for number, finding in findings.items()
     }
@@ -282,9 +305,12 @@ def place_of(finding: Finding, outline: Outline | UnsetType) -> Location:
     """Return the place of a finding, as an entry has it."""
     lines = outline.place_of_line if isinstance(outline, Outline) else {}
     rule = load_all().get(finding.rule)
+    of_finding = outline.lines.get(Outline.key(finding), ()) if isinstance(outline, Outline) else ()
+    also = [lines[line] for line in of_finding if line in lines]
     in_section = rule is not None and rule.once == _SECTION and finding.section_line is not None
     return Location(
         at=lines.get(finding.line),
+        also=also if len(also) > 1 else [],
         section=lines.get(finding.section_line or 0) if in_section else None,
         blocks=blocks_of(finding),
         values=values_of(finding, outline),
