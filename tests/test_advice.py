@@ -54,6 +54,7 @@ def test_one_slip(old: str, new: str, says: str) -> None:
     assert says in only(program, machine)
 
 
+@pytest.mark.ci
 @looped(
     ("head", "says"),
     [

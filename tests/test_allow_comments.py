@@ -155,6 +155,7 @@ def test_a_range_takes_the_blocks_of_both_comments() -> None:
     assert said(report(program)) == [(4, "rapid-in-polar"), (8, "rapid-in-polar")]
 
 
+@pytest.mark.ci
 @looped(
     ("on", "off", "quiet"),
     [
@@ -428,6 +429,7 @@ def test_a_rule_that_is_not_asked_gives_no_such_note(rules: list[str], severitie
     assert "allow-without-effect" in [rule for _, rule in said(found)]
 
 
+@pytest.mark.ci
 @looped(
     ("program", "what"),
     [

@@ -252,6 +252,7 @@ def test_rules_that_are_left_out_need_a_reason(given: dict[str, Any], verdict: s
     assert why in "".join(missing.reason for missing in report.not_evaluated)
 
 
+@pytest.mark.ci
 def test_settings_of_a_report_name_the_keywords(samples: None) -> None:
     settings = polarcheck.check("hexagon.nc", limits={"c_feed": 60}, changes={"limits.x_feed": 9}, strict=True).settings
     assert (settings.changes, settings.strict, settings.max_warnings) == (("limits.x_feed=9",), True, None)
@@ -386,6 +387,7 @@ def test_an_empty_folder_is_told(tmp_path: Path) -> None:
     assert told[0].filename == __file__
 
 
+@pytest.mark.ci
 def test_a_walk_says_what_it_leaves_out(tmp_path: Path) -> None:
     for name in ("a.nc", "b.nc", "P.SUB"):
         (tmp_path / name).write_text(RAPID, "utf-8")

@@ -27,6 +27,7 @@ def test_different_values_are_those_of_numpy(values: list[float]) -> None:
     assert different(np.array(values)).tolist() == np.unique(values).tolist()
 
 
+@pytest.mark.ci
 @given(NUMBERS)
 def test_the_first_of_each_value_is_that_of_numpy(values: list[float]) -> None:
     _, *expected = np.unique(values, return_index=True, return_inverse=True)
@@ -42,11 +43,13 @@ def test_folds_of_groups_are_those_of_their_values(pairs: list[tuple[int, float]
     assert folded(np.minimum, group, values, 4, 99.0).tolist() == expected
 
 
+@pytest.mark.ci
 @given(st.one_of(NUMBERS, st.lists(st.just(float("nan")), max_size=2)), NUMBERS)
 def test_values_among_others_are_those_of_numpy(values: list[float], wanted: list[float]) -> None:
     assert is_among(np.array(values), wanted).tolist() == np.isin(values, wanted).tolist()
 
 
+@pytest.mark.ci
 @given(st.lists(st.floats(-1e9, 1e9) | st.just(np.nan), min_size=1))
 def test_the_median_is_that_of_numpy(values: list[float]) -> None:
     expected = float(np.median(np.array(values)))

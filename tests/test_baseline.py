@@ -204,6 +204,7 @@ def test_what_stands_in_comments_alone_is_told_apart() -> None:
     assert second == first[1:]
 
 
+@pytest.mark.ci
 def test_rules_have_fingerprints_of_their_own() -> None:
     found = report_of("G98 G0 X60. C0\nG12.1\nG1 X40. F200\nG0 C5. C6.\nG1 C-5.\nG13.1\nM30\n").findings
     assert len({one.fingerprint for one in found}) == len({one.rule for one in found}) > 1

@@ -185,6 +185,7 @@ def test_a_number_that_two_names_have_is_said_once() -> None:
     assert line == "rapid-plunge-into-stock: known with Z -1, now -9"
 
 
+@pytest.mark.ci
 def test_where_a_number_is_not_known_any_more_it_is_worse() -> None:
     create(through("-.5", "200"))
     write(a=through("#500", "200"))

@@ -147,6 +147,7 @@ ENDLESS = {
 }
 
 
+@pytest.mark.ci
 @looped("loop", ENDLESS)
 def test_a_loop_in_which_nothing_changes_is_an_error_with_all_that_follows(loop: str) -> None:
     machine, head, on, turns, off, _ = ENDLESS[loop]
@@ -208,6 +209,7 @@ def test_nothing_is_reported_that_rests_on_what_a_bound_has_cut_off(rule: str) -
     assert broken_off > 3
 
 
+@pytest.mark.ci
 def test_the_missing_axis_and_the_time_of_a_cut_section_are_not_known() -> None:
     program = "O1\nG98 T0101\nG0 X60. C0\nG12.1\nG1 X-50. F200.\nX50.\nX-50.\n" + LOOP + "C5.\nX60.\nG13.1\nM30\n"
     report = report_of(program, "fanuc", CUTTER, job=AT_ONCE)

@@ -544,6 +544,7 @@ def test_beyond_both_ranges_any_move_is_told(feed: str, where: str, old: str) ->
     assert f"inch/min, {where} both ranges" in message(wrong, RULE, *TOOLS)
 
 
+@pytest.mark.ci
 def test_each_f_of_a_section_is_told_once() -> None:
     every = METHOD_A.replace("F5.", "F40.")
     assert of_feed(every) == ["C-0.4153", "C-0.4153"]

@@ -416,6 +416,7 @@ def test_quiet_is_annotations_only() -> None:
     assert len(text.splitlines()) == len(annotations(text)) == 1
 
 
+@pytest.mark.ci
 def test_the_summary_of_a_step_is_appended() -> None:
     make(a__nc=RAPID, summary__md="before\n")
     result = check("a.nc", *RAPID_ONLY, "--format", "github", GITHUB_STEP_SUMMARY="summary.md")
@@ -500,6 +501,7 @@ def test_junit_fits_its_schema_and_the_schema_can_refuse() -> None:
     assert not junit_schema().is_valid(text)
 
 
+@pytest.mark.ci
 def test_what_is_clean_is_a_test_that_passes() -> None:
     groups = list(dict.fromkeys(rule.group for rule in load_all().values()))
     found = outcomes(junit(file(finding(), finding()), file(path="b.nc"), file(path="c.nc", sections=0)))

@@ -88,6 +88,7 @@ def test_the_head_of_a_post() -> None:
     assert (said(report), report.not_evaluated) == ([], [])
 
 
+@pytest.mark.ci
 @looped("plane", ["G16 C9.0", "G19", "G16C9."])
 def test_another_plane_of_the_mode_is_not_looked_at(plane: str) -> None:
     section = f"G12.1 E=C D0\n{plane}\nG1 Z-5. F200\nY5.\nG2 Y8. Z-8. R3.\nY0\nG13.1\n"
@@ -98,6 +99,7 @@ def test_another_plane_of_the_mode_is_not_looked_at(plane: str) -> None:
     )
 
 
+@pytest.mark.ci
 def test_the_next_section_is_looked_at_again() -> None:
     two = program().replace(
         "G13.1\n", "G13.1\nG0 X14. C0\nG12.1 D0 E=C\nG16 C9.\nG1 Z-5.\nG13.1\nG0 X14. C0\nG12.1 D0 E=C\nG0 X5.\nG13.1\n"

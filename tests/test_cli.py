@@ -155,6 +155,7 @@ def test_bytes_that_are_not_of_the_encoding_asked_for_are_told() -> None:
     assert check("a.nc", "--encoding", "cp1252", *RAPID_ONLY).exit_code == 0
 
 
+@pytest.mark.ci
 def test_a_bug_is_no_finding(monkeypatch: pytest.MonkeyPatch) -> None:
     make(a__nc=GOOD)
     broken = msgspec.structs.replace(load_all()["rapid-in-polar"], function=lambda *tables: 1 / 0)
@@ -538,6 +539,7 @@ def test_each_file_has_its_machine_where_the_jobs_name_several() -> None:
     assert asked.stdout.endswith("\n2 files checked for mitsubishi-m700: 2 unverified; no findings\n")
 
 
+@pytest.mark.ci
 def test_units_are_those_of_programs_that_do_not_say() -> None:
     inch = "G98 G0 X2. C0\nG12.1\nG1 X.2 C.2 F5.\nC-.2\nG13.1\n"
     make(a__nc=inch)
@@ -634,6 +636,7 @@ def test_the_report_is_long_for_up_to_three_files_and_short_beyond() -> None:
     assert check("a.nc", *RAPID_ONLY, POLARCHECK_FORMAT="short").stdout.startswith(first + "\n\nsettings: select rapid")
 
 
+@pytest.mark.ci
 def test_what_shows_a_file_in_full_holds_the_options_that_were_given() -> None:
     make(**dict.fromkeys(("b__nc", "c__nc", "d__nc"), GOOD))
     Path("it's a.nc").write_text(RAPID, "utf-8")
@@ -887,6 +890,7 @@ def test_a_report_fits_its_schema() -> None:
 # ---- what is imported ----
 
 
+@pytest.mark.ci
 @pytest.mark.one_in(12)
 @pytest.mark.parametrize(
     ("arguments", "unwanted"),

@@ -105,6 +105,7 @@ def test_twins_are_the_same_metal(new: str, verdict: str) -> None:
     assert not result.not_compared
 
 
+@pytest.mark.ci
 def test_macro_and_its_blocks_are_the_same_metal() -> None:
     head, tail = "O1\nG21 G98 G40\nT0101\nG0 X70. Z2. C0\nG12.1\nG1 X40. C0 F200\n", "G13.1\nM30\n"
     blocks = "".join(
@@ -127,6 +128,7 @@ def test_arcs_by_radius_by_center_and_in_parts_are_the_same_metal() -> None:
     assert comparison(whole, program.format("G3 X-40. C0 R20.1\nG3 X40. C0 R20.\n")).verdict == DIFFERS
 
 
+@pytest.mark.ci
 @looped("name", CONTROLS, one_in=12)
 @looped("incremental", [False, True])
 def test_a_section_for_another_control_is_the_same_metal(name: str, incremental: bool) -> None:
@@ -177,6 +179,7 @@ def test_changes_are_found(new: str, expected: set[str], words: str) -> None:
         assert shown in text(result)
 
 
+@pytest.mark.ci
 def test_order_that_stands_elsewhere_on_the_path() -> None:
     early = changed(("G42 X30. F200", "M8\nG42 X30. F200"))
     late = changed(("X0 C-17.321", "M8\nX0 C-17.321"))
@@ -318,6 +321,7 @@ def test_blocks_that_are_not_executed_are_no_verdict() -> None:
     assert comparison(unknown, changed(("F200", "F300"), program=unknown)).verdict == DIFFERS
 
 
+@pytest.mark.ci
 def test_unknown_angle_and_depth() -> None:
     known = changed(("G28 H0\n", ""))
     no_angle = changed(("Z2. C0", "Z2."), program=known)
@@ -327,6 +331,7 @@ def test_unknown_angle_and_depth() -> None:
     assert "C at its beginning is not known in either" in text(unknown_in_both)
 
 
+@pytest.mark.ci
 def test_a_point_that_is_lost_is_a_difference() -> None:
     for old, new in (("C8.660", "C8660"), ("X30.", "X30"), ("Z-5.", "Z-5")):
         result = comparison(HEXAGON, changed((old, new)))
@@ -335,6 +340,7 @@ def test_a_point_that_is_lost_is_a_difference() -> None:
     assert comparison(changed(("C8.660", "C8660")), changed(("C8.660", "C8660"), ("F300", "F310"))).verdict == DIFFERS
 
 
+@pytest.mark.ci
 def test_functions_of_other_spindles_are_orders(tmp_path: Path) -> None:
     program = "G18 G90\nS2=796 M2=3\nSPOS=0\nG0 X60 Z2\nTRANSMIT\nG1 X28 Y0 F200\nZ-4\nX-28\nTRAFOOF\nM30\n"
     file, other = tmp_path / "a.mpf", tmp_path / "b.mpf"
@@ -348,6 +354,7 @@ def test_functions_of_other_spindles_are_orders(tmp_path: Path) -> None:
         assert "differs in orders" in result.output
 
 
+@pytest.mark.ci
 def test_words_that_nobody_can_read_are_no_verdict() -> None:
     unreadable = changed(("X60. C0 F1500", "X6--0. C0 F1500"))
     result = comparison(unreadable, unreadable)
@@ -355,6 +362,7 @@ def test_words_that_nobody_can_read_are_no_verdict() -> None:
     assert "old: a word that the control cannot read" in text(result)
 
 
+@pytest.mark.ci
 def test_block_skip_is_compared_in_both_states() -> None:
     skipped = changed(("Z-5. F300", "/Z-5. F300"))
     result = comparison(HEXAGON, skipped)

@@ -189,12 +189,14 @@ def test_a_subprogram_at_three_depths() -> None:
     assert (new.count("G40 X60."), new.count("M98 P2 L3")) == (1, 1)
 
 
+@pytest.mark.ci
 def test_several_depths_stay_in_offset_mode() -> None:
     blocks = "\n".join([*square(19.0, 200), "Z-6. F300", *square(19.0, 200)[1:]])
     new = text_of(rewrite(PROGRAM.format(x="90.", blocks=blocks)))
     assert (new.count("G42"), new.count("G40 X90.")) == (1, 1)
 
 
+@pytest.mark.ci
 def test_flats_that_do_not_close() -> None:
     """Moves from farther out lead to a flat; the bar is not known."""
     blocks = "C-30. F1500\nX38. F200\nC30.\nX90. F1500"
@@ -232,6 +234,7 @@ def test_what_else_stands_in_the_program_stays() -> None:
     assert rewrite(new, centered).data == expected
 
 
+@pytest.mark.ci
 def test_inch_and_incremental_words() -> None:
     blocks = "U-3. F8.\nH.75\nU-3.\nH-1.5\nU3.\nH.75\nU3. F50."
     text = PROGRAM.format(x="4.5", blocks=blocks).replace("G21", "G20").replace("Z-5.", "Z-.2").replace("Z2.", "Z.1")

@@ -480,6 +480,7 @@ def test_each_format_says_what_was_not_read_or_standard_error_does(form: str) ->
     assert call("check", ".", "--format", form, "-q").stderr == ""
 
 
+@pytest.mark.ci
 def test_pages_in_a_folder_say_what_was_not_read() -> None:
     archive()
     call("check", ".", "-o", "html:pages", "-q")
@@ -633,6 +634,7 @@ def test_what_a_nearer_file_leaves_behind_of_the_one_above_is_said_once(outer: s
     assert f'# not taken over from polarcheck.toml: {left}; extend = ".." would\n' in text
 
 
+@pytest.mark.ci
 def test_several_files_that_leave_the_same_behind_share_a_line() -> None:
     make(*(f"l{number}/a.nc" for number in range(5)), text="O1\nM30\n")
     job("strict = true\n")
@@ -681,6 +683,7 @@ def test_what_is_no_text_is_told_with_its_line() -> None:
     assert refused("check", "a.nc") == "polarcheck.toml: line 2 is not UTF-8; save the file as UTF-8"
 
 
+@pytest.mark.ci
 @looped(
     ("text", "told"),
     [
@@ -927,6 +930,7 @@ def test_init_leaves_the_machine_open_where_several_read_the_programs() -> None:
     assert "# These read the programs: fanuc, fanuc-16i" in text
 
 
+@pytest.mark.ci
 def test_init_takes_the_machine_that_is_named_from_where_the_file_lies() -> None:
     make("jobs/O1.nc")
     make("l.toml", text="inherits = 'fanuc-30i'\n")

@@ -201,6 +201,7 @@ def test_a_tool_too_large_by_a_hundredth_is_found(name: str) -> None:
     assert found.depth.max() > 0.0089
 
 
+@pytest.mark.ci
 @looped("name", ["square", "hexagon", "full circle", "manual sample", "two flats"])
 def test_the_hundredth_is_measured_on_every_move(name: str) -> None:
     legal = LEGAL[name]
@@ -359,6 +360,7 @@ def test_a_loop_behind_a_long_one_that_goes_round_twice_is_looked_at() -> None:
     assert found.depth == pytest.approx(alone.depth)
 
 
+@pytest.mark.ci
 @looped("numbers", [(0, 1, 2), (7, 3, 5)])
 def test_loops_above_each_other_do_not_see_each_other(numbers: tuple[int, ...]) -> None:
     slots = [

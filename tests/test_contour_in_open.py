@@ -44,6 +44,7 @@ def beside(air: float, begin: complex) -> float:
     return RADIUS - abs(((point - begin).conjugate() * way).imag) / abs(way)
 
 
+@pytest.mark.ci
 @looped("cancels", [False, True])
 @looped("turn", [1, 1j, np.exp(2j)])
 def test_a_ramp_from_the_air_cuts_only_what_is_within_it(turn: complex, cancels: bool) -> None:

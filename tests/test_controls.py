@@ -70,6 +70,7 @@ def test_the_example_of_the_manual_closes_in_one_reading_of_x(program: str, name
         assert tables["arcs"].is_no_circle.any() == (reading != right), reading
 
 
+@pytest.mark.ci
 def test_the_haas_example_is_a_quarter_of_a_circle_with_x_as_a_radius() -> None:
     tables = tables_of(HAAS, "haas-lathe")
     trace = tables["trace"]
@@ -157,6 +158,7 @@ def test_feed_in_the_mode_and_after_it(
     assert found == ([("feed-lost-from-per-revolution", "P62", 5)] if alarm else [])
 
 
+@pytest.mark.ci
 @looped("system", ["A", "B"])
 @looped(
     ("mode", "in_mode", "inside", "behind"),
@@ -233,6 +235,7 @@ def test_infeed_cycle_with_a_cutter() -> None:
     assert not unknown.known.any()
 
 
+@pytest.mark.ci
 @looped(
     ("infeed", "passes"),
     [("", 1), ("E0", 1), ("E8.", 3), ("E-8.", 3), ("E12.", 2), ("E24.", 1), ("E30.", 1), ("E5.", 5)],
@@ -263,6 +266,7 @@ def test_infeed_cycle_along_the_path_of_the_tool_center() -> None:
     assert np.abs(inside.end).min() == pytest.approx(10)
 
 
+@pytest.mark.ci
 def test_every_pass_is_checked() -> None:
     """A pass that the contour alone would hide: inside a pocket the first passes are nearest to the center."""
     pocket = "G98 G0 X4. C0\nG12.1 E4.\nG1 X40. F100\nC20.\nX-40.\nC-20.\nX40.\nC0\nG13.1\n"
@@ -283,6 +287,7 @@ def test_what_is_not_simulated_is_said() -> None:
     assert len(moves) == 10 * 201
 
 
+@pytest.mark.ci
 def test_an_open_contour_is_one_pass() -> None:
     program = GSK_CYCLE.replace("G1 C0\nG40 X300.", "G1 C-10.\nG40 X340.")
     moves = moves_of(program, "gsk-988", "2:radius=10")
@@ -303,6 +308,7 @@ def test_infeed_is_a_word_of_one_control() -> None:
 FAST = "G98 G0 X60. C0\nG12.1\nG1 X4. C5. F100\nC-5. F500\nG13.1\n"
 
 
+@pytest.mark.ci
 def test_excess_speed_is_an_alarm_or_an_override() -> None:
     off = report_of(FAST, "fanuc-30i", changes={"parameters": {"1422": 3600}}).findings[0]
     assert (off.rule, off.severity, off.alarm) == ("c-feed-above-limit", "error", "OT0512")
@@ -588,6 +594,7 @@ def test_a_mazak_selects_the_plane_with_its_axes(plane: str) -> None:
 # ---- the clamp of the feed, GSK parameters 5450#1 and 5462 ----
 
 
+@pytest.mark.ci
 @looped(
     ("on", "severity", "text", "rate"),
     [

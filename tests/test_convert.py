@@ -171,6 +171,7 @@ def test_a_plane_without_its_axes_stays_on_its_own_control() -> None:
     assert convert(text, "fagor-8055t", "fagor-8055t").data == text.encode()
 
 
+@pytest.mark.ci
 @looped("block", ["G17 XC M8", "G21 G94 G40 G17 XC", "g17 x c m8"])
 def test_the_axes_of_a_plane_stand_together(block: str) -> None:
     """G17 XC in a block whose other words are written anew."""
@@ -208,6 +209,7 @@ def test_a_code_of_x_with_a_word_beside_it_moves_nothing() -> None:
     assert "G137 C0" in convert(program, "mazak-integrex", "okuma-osp").data.decode()
 
 
+@pytest.mark.ci
 def test_tools_of_a_fagor_are_called_by_t_and_d() -> None:
     """T0101 would be tool 101 there."""
     program = "O1\nG21 G98 G40\nT0303\nG0 X60. Z2. C0\nG12.1\nG1 X36. C10. F150\nX60. C0\nG13.1\nT0300\nM30\n"
@@ -399,6 +401,7 @@ def test_a_plane_that_ends_the_mode_is_a_plane_outside_of_it(plane: str, target:
     assert lines[lines.index("G0 Z50.") - 1] == plane
 
 
+@pytest.mark.ci
 def test_f_is_that_of_the_way_that_the_control_measures() -> None:
     """Haas measures X, Y and Z: sqrt(3^2 + 4^2) of 4 on the plane, so that 200 there is 250 along the way."""
     program = section("G1 X60. C4. Z-1. F200", "G1 X40. C4.", "G13.1")
@@ -422,6 +425,7 @@ def test_units_that_the_other_control_lacks_are_converted() -> None:
     assert "G0 X76.2 Z2.54 C0\nG137 C0\nG17\nG101 X25.4 Y12.7 F254.\nG136\nG0 Z50.8\n" in text
 
 
+@pytest.mark.ci
 def test_distances_become_coordinates() -> None:
     program = section("G1 U-20. H5. F200", "W-3.", "G3 U-10. H5. R5.", "G1 X60. C0")
     text = convert(program, SOURCE, "okuma-osp").data.decode()

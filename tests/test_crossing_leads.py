@@ -30,6 +30,7 @@ def test_a_lead_out_through_the_part_is_told_in_its_block(lead_out: str, machine
     assert told(LEAD_IN, CLOSE, lead_out, machine) == [("contour-crosses-itself", line)]
 
 
+@pytest.mark.ci
 def test_a_lead_in_through_the_part_is_told() -> None:
     assert [rule for rule, _ in told("G1 X-60. C3.\nX40. C0\n", CLOSE, LEAD_OUT)] == ["contour-crosses-itself"]
 

@@ -59,11 +59,13 @@ def said_of(blocks: Sequence[str], machine: str = "fanuc-30i") -> list[tuple[int
     return [(found.line - len(head) - 1, str(found.values["word_needed"])) for found in findings]
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize("points", [ellipse(), cam(), hexagon(), rounded_square(), drop(), ellipse(24), hexagon(6)])
 def test_no_point_of_a_sound_curve_is_off_it(points: list[complex]) -> None:
     assert not said_of(blocks_of(points))
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize("number", [1, 9, 40, 71])
 def test_a_point_off_the_curve_is_told_with_the_number_that_is_meant(number: int) -> None:
     blocks = blocks_of(ellipse())
@@ -97,6 +99,7 @@ def test_a_word_of_the_block_before_is_told() -> None:
     assert [block for block, _ in said_of([*blocks[:9], f"{x} {c}", *blocks[10:]])] == [9]
 
 
+@pytest.mark.ci
 def test_points_off_a_curve_in_many_places_are_teeth() -> None:
     row = [f"X{50 if number % 12 == 6 else 40}. C{number / 2 - 15:.1f}" for number in range(60)]
     assert not said_of(row)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+import pytest
 from cases import looped
 from hexagon_program import CONTROLS, CUTTER, hexagon
 from programs import tables_of
@@ -20,6 +21,7 @@ def helix(turns: int, pitch: float, *, closes: bool) -> str:
     return "".join(TURN.format(-pitch * turn) for turn in range(1, turns + 1)) + "/G3 I-15." * closes
 
 
+@pytest.mark.ci
 @looped("control", CONTROLS)
 def test_a_helix_cuts_down_to_its_last_turn(control: str) -> None:
     for turns, pitch in ((2, 2.5), (10, 1.5), (1, 3.0)):

@@ -123,6 +123,7 @@ def test_walls_that_end_in_the_air_are_no_ring(curves: list[Wall]) -> None:
     assert widest_gap([np.array(curve) for curve in curves]) is None
 
 
+@pytest.mark.ci
 def test_gaps_narrower_than_what_is_tried_of_the_part_are_left_out(tmp_path: Path) -> None:
     sides = program(polygon(2))
     arcs = sides.replace("\nX-40.", "\nG3 R20. X-40.").replace("\nX40.", "\nR20. X40.").replace("\nG40", "\nG1 G40")

@@ -29,6 +29,7 @@ def circle(space: Any) -> None:
     space.add_circle((0, 0), 20)
 
 
+@pytest.mark.ci
 @looped(
     "draw",
     [
@@ -147,6 +148,7 @@ def fitted(bits: int, frame: int, on_curve: int) -> Callable[[Any], None]:
     return draw
 
 
+@pytest.mark.ci
 @looped(("bits", "frame", "on_curve"), [(4, 16, 8), (2, 0, 1), (0, 0, 0)], ids=["spline", "curve", "plain"])
 @looped("version", ["R12", "R2000"])
 def test_control_points_of_a_polyline_are_no_curve(
@@ -169,6 +171,7 @@ def test_nor_are_they_in_a_block_that_is_mirrored(tmp_path: Path) -> None:
 # ---- units ----
 
 
+@pytest.mark.ci
 @looped(
     ("units", "scale"),
     [
@@ -183,6 +186,7 @@ def test_each_unit_of_a_dxf_file_is_converted(tmp_path: Path, units: int, scale:
     assert area(np.array(drawing.curves[0])) * scale**2 == pytest.approx(math.pi * 400, abs=0.1)
 
 
+@pytest.mark.ci
 @looped(
     ("units", "message"),
     [

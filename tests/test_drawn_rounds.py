@@ -129,6 +129,7 @@ def test_a_whole_circle_agrees_with_what_is_nearly_one(name: str, stock: float |
     assert outcome(report(WHOLE, CIRCLES[name], stock)) == "pass"
 
 
+@pytest.mark.ci
 def test_a_circle_of_two_splines_is_too_large() -> None:
     """Between its ends it bulges by 1.84 %."""
     (finding,) = report(WHOLE, CIRCLES["two splines"], None).findings

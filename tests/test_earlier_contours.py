@@ -82,6 +82,7 @@ def test_roughing_chamfers_and_steps_are_sound(
     assert losses(section(1, *rough), section(2, *finish)) == []
 
 
+@pytest.mark.ci
 def test_a_face_that_is_turned_between_begins_another_part() -> None:
     turning = "T0303\nG97 S1500 M3\nG0 X60. Z-10.\nG99 G1 X-1. F.15\nG0 X60. Z50.\nG98 M5"
     assert losses(section(1, 6, 26.0), section(2, 6, 28.0)) == [pytest.approx(1)]
@@ -198,6 +199,7 @@ def test_allowances_clearing_and_steps_are_sound(sections: list[str]) -> None:
     assert losses(*sections) == []
 
 
+@pytest.mark.ci
 def test_where_the_bar_is_as_large_as_the_contour_nothing_can_be_lost() -> None:
     assert losses(milled(1, circle(37)), milled(2, circle(36)), bar=36) == []
     assert losses(milled(1, circle(35)), milled(2, circle(35.6)), bar=36) == [pytest.approx(0.3, abs=0.005)]

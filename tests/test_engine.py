@@ -354,6 +354,7 @@ def test_what_nobody_can_decide_fails_no_file_whatever_its_severity() -> None:
         assert report_of(followed, "okuma-osp", job=given).verdict == "fail"
 
 
+@pytest.mark.ci
 def test_a_section_of_both_runs_is_one_with_the_worst_of_each() -> None:
     program = "O1\nG21 G98 T0101\nG0 X60. C0\nG12.1\nG1 X40. C5. F300\n{}\nX60. C0\nG13.1\nM30\n"
     run, skipped = (report_of(program.format(text)).polar_sections[0] for text in ("X-40.", "N1"))
@@ -426,6 +427,7 @@ def test_a_block_that_ran_often_is_one_finding_at_its_worst_run() -> None:
 # ---- the text once, the runs each ----
 
 
+@pytest.mark.ci
 def test_what_hangs_on_the_text_alone_is_looked_for_once(monkeypatch: pytest.MonkeyPatch) -> None:
     program = "O1\nG21 G98 T0101\n/G0 X60. C0 X61.\nG12.1\nG1 X40. F100\nG0 X50.\nG13.1\nM30\n"
     seen: list[str] = []

@@ -61,6 +61,7 @@ def mirrored(lines: list[str]) -> list[str]:
     return list(turned)
 
 
+@pytest.mark.ci
 @looped("contour", [ROUNDED, CENTERED, mirrored(ROUNDED), mirrored(CENTERED)])
 def test_the_sound_contour_has_no_finding(contour: list[str]) -> None:
     assert said(report_of(program(contour), "fanuc-30i", "1:radius=2")) == []
@@ -283,6 +284,7 @@ def test_one_slip_is_one_finding(lines: list[str], right: list[str], wrong: list
     assert words in found[0].message
 
 
+@pytest.mark.ci
 def test_a_ramp_that_leaves_a_pocket_is_wrong_and_not_its_approach() -> None:
     text = "\n".join(POCKETS) + "\n"
     slipped = text.replace("G40 X30. F1500", "G40 X130. F1500", 1)
@@ -372,6 +374,7 @@ def test_a_point_is_told_where_the_shape_shows_it(contour: list[str], right: str
 PENTAGON = ["U0. H-21.796", "U-41.459 H-6.736", "U-25.623 H17.634", "U25.623 H17.634", "U41.459 H-6.736"]
 
 
+@pytest.mark.ci
 @looped("missing", [(line, word) for line in PENTAGON[1:] for word in line.split()])
 def test_a_distance_that_is_missing_is_the_one_that_closes_the_contour(missing: tuple[str, str]) -> None:
     line, word = missing
@@ -381,6 +384,7 @@ def test_a_distance_that_is_missing_is_the_one_that_closes_the_contour(missing: 
     assert (text.splitlines()[finding.line - 1], finding.values["word_needed"]) == (rest, word)
 
 
+@pytest.mark.ci
 @looped("ends", [("C8.", "C-8."), ("C8.", "C-2."), ("C4.", "C3."), ("C8.", "C0"), ("C0", "C-8.")])
 def test_leads_along_a_side_belong_to_no_contour(ends: tuple[str, str]) -> None:
     begins, leaves = ends
@@ -389,6 +393,7 @@ def test_leads_along_a_side_belong_to_no_contour(ends: tuple[str, str]) -> None:
     assert report_of(program(sound), "fanuc-30i", "1:radius=4").findings == []
 
 
+@pytest.mark.ci
 @looped("code", ["CR=20", "CR=110", "CR=100"])
 def test_an_end_of_a_slot_is_told_where_the_contour_begins_with_its_arc(code: str) -> None:
     moves = ["G41 X8 Y10 F180", "G2 X8 Y-10 CR=10", "G1 X-8", "G2 X-8 Y10 CR=10", "G1 X9", "G40 X30 Y22", "G0 Z2"]
@@ -405,6 +410,7 @@ FLATS = ["G42 X24. C-30. F250", "C30.", "G40 X80. C34.", "Z2. F2000", "X-80. C34
 FLATS += ["G42 X-24. C30. F250", "C-30.", "G40 X-80. C-34."]
 
 
+@pytest.mark.ci
 @looped("line", [0, 6])
 def test_a_start_up_is_missing_where_the_way_out_mirrors_another_one(line: int) -> None:
     lines = [*HEAD[:-2], "G1 X80. C-34. F2000", "Z-8. F800", *FLATS, *TAIL[1:]]
@@ -414,6 +420,7 @@ def test_a_start_up_is_missing_where_the_way_out_mirrors_another_one(line: int) 
     assert (finding.rule, wrong.splitlines()[finding.line - 1]) == ("cancel-without-start-up", FLATS[line + 2])
 
 
+@pytest.mark.ci
 def test_a_number_as_another_block_has_it_is_meant_and_none_that_is_nearly_that() -> None:
     sides = ["C8.66", "G3 X2.5 C12.99 R5.", "G1 X-12.5 C4.33", "G3 X-12.5 C-4.33 R5.", "G1 X2.5 C-12.99"]
     moves = ["G42 X10. C0 F150", *sides, "G3 X10. C-8.66 R5.", "G1 C0", "G40 X40.", "Z2.", "G13.1", "M30"]
@@ -423,6 +430,7 @@ def test_a_number_as_another_block_has_it_is_meant_and_none_that_is_nearly_that(
     assert "a digit is wrong: with C8.66" in finding.message
 
 
+@pytest.mark.ci
 def test_what_stands_otherwise_in_another_pass_explains_what_follows_from_it() -> None:
     sides = [
         *("C8.733", "G3 X26.732 C11.467 I-3.5 J0", "G1 X6.122 C19.707", "G3 X-0.093 C19.719 I-1.561 J-1.953"),
@@ -438,6 +446,7 @@ def test_what_stands_otherwise_in_another_pass_explains_what_follows_from_it() -
     assert [one.rule for one in finding.follows] == ["arc-end-off-circle"]
 
 
+@pytest.mark.ci
 def test_a_code_that_one_of_the_passes_lacks_is_told_once() -> None:
     pocket = ["G0 X50. C0", "G12.1", "G1 Z-4. F300", *ROUNDED, "G40 X50. F1500", "Z2.", "G13.1"]
     lines = [
@@ -454,6 +463,7 @@ def test_a_code_that_one_of_the_passes_lacks_is_told_once() -> None:
     assert "polar-switched-in-offset-mode" in [one.rule for one in found[0].follows]
 
 
+@pytest.mark.ci
 def test_an_arc_before_the_line_that_leads_to_it_is_one_finding() -> None:
     """Behind it two lines follow, so that its code is in force in the second one."""
     cross = [
@@ -479,6 +489,7 @@ def test_arcs_of_the_other_sense_meet_nowhere_and_are_told_once() -> None:
     assert lines[finding.line - 1] == arcs[0]
 
 
+@pytest.mark.ci
 def test_a_cancel_that_is_lost_behind_an_arc_is_told_once() -> None:
     pocket = ["G41 X40. C0 F200", "G3 X-40. R20.", "X40. R20.", "G40 G1 X10. F1500"]
     wider = ["G41 X44. C0 F200", "G3 X-44. R22.", "X44. R22.", "G40 G1 X10. F1500"]
@@ -492,6 +503,7 @@ def test_a_cancel_that_is_lost_behind_an_arc_is_told_once() -> None:
     assert "arc-without-center" in [one.rule for one in found[0].follows]
 
 
+@pytest.mark.ci
 def test_a_ramp_that_is_skipped_is_told_by_its_sign_of_block_skip() -> None:
     hexagon = ["C11.547", "X0 C23.094", "X-40. C11.547", "C-11.547", "X0 C-23.094", "X40. C-11.547", "C0"]
     contour = ["Z-4. F300", "G42 X40. F200", *hexagon, "G40 X60. F1500", "Z2."]
@@ -503,6 +515,7 @@ def test_a_ramp_that_is_skipped_is_told_by_its_sign_of_block_skip() -> None:
     assert "cancel-without-start-up" in [one.rule for one in finding.follows]
 
 
+@pytest.mark.ci
 def test_a_limit_that_is_only_noted_leads_no_finding() -> None:
     slot = ["G41 X42.862 F75", "H4.762", "G2 U-12.7 H6.35 I-6.35 J0", "U-12.7 H-6.35 I0 J-6.35", "G1 H-9.524"]
     slot += ["G3 U12.7 H-6.35 I6.35 J0", "U12.7 H6.35 I0 J6.35", "G1 H4.762", "G40 X31.836 F800"]
@@ -513,6 +526,7 @@ def test_a_limit_that_is_only_noted_leads_no_finding() -> None:
     assert "with G3" in finding.message
 
 
+@pytest.mark.ci
 def test_no_contour_is_searched_again_that_an_edit_leaves_as_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
     """A hexagon with its own slip in each section: what is tried in one says nothing new of the others."""
     slips = [("C-8.66", "C-6.88"), ("C17.321", "C17.231"), ("X-30.", "X-33."), ("C-17.321", "C-13.721")]
@@ -532,6 +546,7 @@ def test_no_contour_is_searched_again_that_an_edit_leaves_as_it_is(monkeypatch: 
     assert searched.count("edited") <= 2 * len(slips)
 
 
+@pytest.mark.ci
 def test_what_an_arc_that_is_none_has_hidden_is_no_reason_against_what_mends_it() -> None:
     """A ramp of a tenth and an approach of half: without the first one the second can be seen."""
     arcs = ["C-9.5", "G2 X0 C-17.5 I-8. J0", "X-16. C-9.5 I0 J8.", "G1 C9.5", "G2 X0 C17.5 I8. J0", "X16. C9.5 I0 J-8."]
@@ -601,6 +616,7 @@ def test_what_makes_it_symmetric_is_likelier_than_what_closes_it(
     assert f"with {word} " in message
 
 
+@pytest.mark.ci
 def test_a_distance_that_is_wrong_is_not_explained_by_reading_all_of_them_as_positions() -> None:
     moves = ["X-17.966 C5.837", "X-11.103 C-15.282", "X11.103 C-15.282", "X17.966 C5.837", "X0 C18.89"]
     head = ["O1", "T0101", "G90 G94 G0 X60. Z2. C0", "G12.1", "G1 X20. C18.445 F800", "Z-4. F300"]
@@ -611,6 +627,7 @@ def test_a_distance_that_is_wrong_is_not_explained_by_reading_all_of_them_as_pos
     assert "with X-11.103 it would be a regular pentagon" in finding.message
 
 
+@pytest.mark.ci
 def test_no_other_number_is_named_where_another_pass_has_the_number() -> None:
     ramp = ["G1 X50.392 C13.166 F800"]
     passes = [line for z in ("Z-2.", "Z-4.") for line in (*ramp, z, *HEXAGON_CROSSED, "G40 X48.", "Z2.")]
@@ -648,6 +665,7 @@ def test_two_words_that_make_it_symmetric_together_are_both_named(
     assert all(any(f"with {word}" in message for _, message in said_there) for word in words)
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize(
     ("of_section", "of_run", "rows"), [(64, 512, 19_500), (0, 512, 0), (64, 0, 0)], ids=["rows", "section", "run"]
 )

@@ -211,6 +211,7 @@ def planned(*paths: str) -> tuple[list[batch.Task], list[str]]:
     return batch.plan(paths, OfPrograms(Options()), (), told.append, pytest.fail), told
 
 
+@pytest.mark.ci
 @of_posix
 def test_a_file_that_is_gone_when_its_turn_comes() -> None:
     make("f/a.nc", "f/b.nc", "f/c.nc", "f/d.nc")

@@ -74,6 +74,7 @@ def test_the_limit_of_x_in_closed_form() -> None:
     assert (row.highest, row.limited_by) == (101, "X")
 
 
+@pytest.mark.ci
 @looped(
     ("changes", "highest", "limited_by"),
     [

@@ -89,6 +89,7 @@ def test_one_odd_corner_is_told_with_its_value(sides: int, form: str) -> None:
         assert all(abs(float(word[1:]) - near[word[0]]) < 0.002 for word in words), (at, meant, told)
 
 
+@pytest.mark.ci
 @looped("form", FORMS)
 def test_a_hexagon_with_all_x_as_radii_is_told_whatever_its_leads(form: str) -> None:
     corners = [complex(point.real / 2, point.imag) for point in polygon(6)]
@@ -96,6 +97,7 @@ def test_a_hexagon_with_all_x_as_radii_is_told_whatever_its_leads(form: str) -> 
     assert "diameter-radius-mixed" in [finding.rule for finding in report.findings]
 
 
+@pytest.mark.ci
 @looped(
     ("corner", "text"),
     [

@@ -108,6 +108,7 @@ def six_holes(old: str = "", new: str = "") -> str:
     return f"{head}{cuts.replace(old, new, 1) if old else cuts}G13.1\nG0 X100. Z50.\nM5\nM30\n"
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize(
     ("written", "how"),
     [
@@ -129,6 +130,7 @@ def test_places_that_are_meant_are_told_nothing(old: str, new: str) -> None:
     assert told(six_holes(old, new)) == []
 
 
+@pytest.mark.ci
 def test_thousands_of_places_are_no_pattern() -> None:
     """Each of 4,000 places beside each other would be 256 MB."""
     cuts = "".join(f"G1 X{20 + number / 100:.2f} C{number % 7}. F1500\nZ-4. F50\nZ2.\n" for number in range(4000))

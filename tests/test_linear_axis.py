@@ -164,6 +164,7 @@ def test_numbers_of_axes_that_nobody_knows_are_not_those_of_the_machine() -> Non
     assert reasons[0].startswith("P beside G12.1 is a linear axis that is not known")
 
 
+@pytest.mark.ci
 def test_p_alone_names_no_axis_of_the_plane() -> None:
     """On a lathe whose G12.1 takes P and no Q it is the spindle: the section is judged as without it."""
     program = SQUARE.replace("G98 ", "G98 G40 M200 ").replace("G12.1", "G12.1 P3").replace("F200", "F90000")
@@ -188,6 +189,7 @@ def test_x_beside_another_linear_axis_moves_by_itself() -> None:
     )
 
 
+@pytest.mark.ci
 @looped("entry", ["C0 Z2.", "C0 Y75. Z2.", "C0 Z75."], one_in=12)
 @looped("axis", ["Y", "Z"])
 @looped("control", ["gsk-988", "mitsubishi-m700", "fanuc-30i"])

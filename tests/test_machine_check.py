@@ -53,6 +53,7 @@ def test_nothing_is_open_where_all_is_answered() -> None:
     assert len(lines) == 1
 
 
+@pytest.mark.ci
 @looped(
     ("values", "told"),
     [

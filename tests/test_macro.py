@@ -79,6 +79,7 @@ def test_round_at_an_address_goes_to_its_least_increment() -> None:
     assert found == [-1.235, -3.581, 3.58, 2]
 
 
+@pytest.mark.ci
 def test_brackets_too_deep_can_be_calculated() -> None:
     block = f"#1={'[' * 10_000}7{']' * 10_000}"
     statement = read_statement(block)

@@ -323,6 +323,7 @@ def test_a_corner_outside_the_mode_changes_nothing() -> None:
     assert [one.reason for one in report_of(program + TAIL, MACHINE, TOOL).not_evaluated if one.rule == "all"] == []
 
 
+@pytest.mark.ci
 def test_a_lathe_may_make_corners_by_words_with_a_comma() -> None:
     head = "O1\nG98 G0 X60. C0\nT0808\nG12.1\nG1 G42 X40. F200\n"
     program = head + "C15. ,R4.\nX-40. ,C3.\nC-15.\nX40.\nC0\nG40 X60.\nG13.1\nM30\n"

@@ -104,6 +104,7 @@ def test_a_finding_that_makes_the_part_doubtful_leaves_it_out(block: str, writte
     assert bool(line_of(text.replace(block, written))) == is_told
 
 
+@pytest.mark.ci
 def test_a_contour_that_is_not_known_as_a_whole_has_no_line() -> None:
     text = program([Section(polygon(6, 30.0), depths=TWICE)])
     assert line_of(text.replace("X30. C8.6603", "X#5041 C8.6603")) == ""

@@ -29,6 +29,7 @@ def path(program: str, machine: str) -> np.ndarray:
 TWIN = FANUC.format("80.", cuts(2, "C"))
 
 
+@pytest.mark.ci
 @looped("on", ["G101", "G105"], one_in=12)
 @looped("off", ["G109", "G110", "G103", "G104", "G107", "G108"])
 def test_a_map_gives_the_path_of_its_twin_whichever_map_ends_it(on: str, off: str) -> None:

@@ -57,11 +57,13 @@ def test_a_mesh_in_inch_and_on_the_inner_side() -> None:
     assert finding.count > 100
 
 
+@pytest.mark.ci
 def test_a_mesh_that_is_coarse_enough_is_none() -> None:
     assert interferences(program(circle(10, 500), 60), "1:radius=5") == []
     assert interferences(program(circle(10, 2000, 5), 60), "1:radius=5") == []
 
 
+@pytest.mark.ci
 def test_a_true_reversal_beside_a_mesh_is_its_own() -> None:
     """A groove narrower than the cutter in the way out of the mesh."""
     contour = [*circle(10, 4000)[:1001], "X-10. C10.", "X-10. C7.", "X-16. C7.", "X-16. C10.", "X-60. C10.", "X-80."]

@@ -73,6 +73,7 @@ def test_what_is_long_is_cut_off() -> None:
 # ---- numbers ----
 
 
+@pytest.mark.ci
 @looped(
     ("feed", "limit", "said"),
     [
@@ -92,6 +93,7 @@ def test_a_programmed_feed_of_an_inch_program_is_shown_as_it_is() -> None:
     assert said.startswith("F is 60.255 inch/min, FANUC lathe control clamps it at 59.0551 inch/min")
 
 
+@pytest.mark.ci
 @looped(
     ("feed", "machine", "rate", "highest"),
     [
@@ -111,6 +113,7 @@ def test_a_rate_and_its_limit_are_told_apart(feed: str, machine: str, rate: str,
     assert said.endswith(f"highest F here: {highest}")
 
 
+@pytest.mark.ci
 def test_a_length_and_its_limit_are_told_apart() -> None:
     program = polar("G1 X40. F200", "C0", "X60.0002")
     said = message(program, "travel-limit", changes={"limits": {"x_maximum": 30.0}})
@@ -128,6 +131,7 @@ def test_the_clearance_is_named() -> None:
     )
 
 
+@pytest.mark.ci
 def test_a_ramp_and_its_radius_are_told_apart() -> None:
     program = polar("G1 G42 X72.0002 F200", "C10.", "G40 C14.", head=HEAD.replace("X50.", "X80."))
     assert message(program, "start-up-shorter-than-radius", "fanuc", "1:radius=4") == (
@@ -178,6 +182,7 @@ def test_text_outside_a_program_is_shown_where_it_stands(program: str, places: l
     assert [(finding.line, finding.block) for finding in report.findings] == places
 
 
+@pytest.mark.ci
 @looped(("machine", "on", "off", "axis"), [
     ("fanuc", "G12.1", "G13.1", "C"), ("haas-lathe", "G112", "G113", "Y"), ("okuma-osp", "G137", "G136", "Y"),
 ])  # fmt: skip
@@ -221,6 +226,7 @@ def test_a_point_of_the_plane_has_the_words_of_the_machine(machine: str, on: str
     assert re.search(rf" at X[0-9.]+ {axis}[0-9.]+", said), said
 
 
+@pytest.mark.ci
 @looped(("machine", "said"), [("fanuc", "arc without R, I or J"), ("okuma-osp", "arc without L, I or J")])
 def test_an_arc_has_the_addresses_of_the_machine(machine: str, said: str) -> None:
     program = f"{HEAD}G12.1\nG1 X40. F200\nG2 X20.\n{TAIL}"

@@ -36,6 +36,7 @@ def test_the_way_between_two_cuts_of_one_compensation_is_no_cut(feed: str, expec
     assert found(f"{HEAD.removesuffix('/Z-5.')}/{flats}/G13.1/G0 X100. Z50./M30") == expected
 
 
+@pytest.mark.ci
 @looped(("x", "expected"), [("54.", {}), ("44.", {"approach-inside-stock": "error"})])
 def test_beyond_the_turned_bar_no_wall_stands(x: str, expected: dict[str, str]) -> None:
     """Two flats, each longer than the spigot of 31 mm is wide: beside it the line of the other is in the air."""

@@ -102,6 +102,7 @@ def test_the_virtual_axis_is_that_of_the_machine() -> None:
     assert report == [("G113", "polar-never-entered")]
 
 
+@pytest.mark.ci
 @looped(
     ("blocks", "head"),
     [
@@ -147,6 +148,7 @@ def test_f_of_which_nobody_knows_what_it_means(feed: str, head: str, machine: st
     assert "feed-mode-unknown" not in [rule for _, rule in said(FLAT.format(feed), machine, head=per_minute)]
 
 
+@pytest.mark.ci
 @looped(
     ("feed", "head", "machine"),
     [
@@ -297,6 +299,7 @@ def test_an_offset_assigned_in_the_mode(block: str, rule: str, machine: str) -> 
     assert said(blocks, machine, head=MM if machine != "haas-lathe" else MM.replace(" G18", "")) == [(block, rule)]
 
 
+@pytest.mark.ci
 def test_it_names_the_variable() -> None:
     [(_, _, message)] = found(ASSIGNED.format("#[2000+12]=.5"))
     assert message == "tool offset changed in the polar mode by #2012; write it before G12.1 or after G13.1"

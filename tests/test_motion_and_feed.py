@@ -76,6 +76,7 @@ def test_an_arc_of_z_and_one_axis_is_an_arc_of_another_plane(program: str, arc: 
     assert found.findings[0].alarm == "PS0021"
 
 
+@pytest.mark.ci
 @looped(
     "arc", ["G2 C0. Z-10. R8.", "G2 C0. Z-10. R20.", "G2 C0. Z-10. J-8.", "G3 X20. Z-10. R5.", "G2 C0. W-2. I0 J-8."]
 )

@@ -35,6 +35,7 @@ def rewritten(program: bytes, line: int, new: str, target: str = "fanuc", machin
     return with_edits(program_read, [*edits, *edits_of_signs(program_read, profile)])[0]
 
 
+@pytest.mark.ci
 @looped(
     ("program", "line", "new", "expected"),
     [

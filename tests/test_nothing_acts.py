@@ -151,6 +151,7 @@ def acting(data: bytes, color: bool = False) -> list[str]:
     return [text[max(found.start() - 40, 0) : found.end() + 20] for found in SEEN.finditer(text)]
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize("arguments", [*checks(), *others()], ids=lambda words: " ".join(map(repr, words))[:80])
 def test_nothing_acts(arguments: tuple[str, ...]) -> None:
     result = call(*arguments)
@@ -162,6 +163,7 @@ def test_nothing_acts(arguments: tuple[str, ...]) -> None:
     assert not re.search(r"^(?:N\\x0d|NR)", result.stdout, re.MULTILINE)
 
 
+@pytest.mark.ci
 @pytest.mark.one_in(12)
 @pytest.mark.parametrize("form", OF_MANY)
 def test_nothing_acts_in_a_file_that_is_written(form: str) -> None:
@@ -245,6 +247,7 @@ def test_no_line_on_one_file_is_a_command_of_a_ci_log(name: str) -> None:
         assert not OF_RUNNER.search(result.stderr)
 
 
+@pytest.mark.ci
 @without_such_names
 @looped("form", ["concise", "short"])
 def test_a_path_that_would_be_a_command_still_leads_to_its_file(form: str) -> None:

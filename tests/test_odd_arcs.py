@@ -126,6 +126,7 @@ def test_an_arc_along_its_own_radius_is_a_line(code: str, x: str) -> None:
     assert not [line for line in lines if line.startswith(("G2 ", "G3 "))]
 
 
+@pytest.mark.ci
 def test_a_program_of_an_arc_below_half_its_chord_is_converted() -> None:
     program = "O1\nG17 G90 G94 G40 G97\nT0101\nG0 X60. Z2. C0\nG12.1\nG1 X30. F1000\nZ-1. F200\nG1 X20. C0\n"
     program += "G3 X20.004 C0 R0.001\nG1 X40.\nZ2.\nG13.1\nG0 X100. Z50.\nM30\n"
@@ -210,6 +211,7 @@ def test_a_block_that_no_move_of_the_rolled_program_stands_for_is_named(monkeypa
         )
 
 
+@pytest.mark.ci
 def test_an_arc_whose_ends_lie_on_no_circle_has_no_keyway() -> None:
     """Its center is not known, and nothing is divided by that."""
     program = "G12.1\nG42X20C-20\nG2X1J5C1\nX20C-20.5"

@@ -111,6 +111,7 @@ def test_a_lead_through_the_part_and_g13_1_before_g40_are_one_finding(
     assert [(finding.rule, finding.line) for finding in found] == [(rule, line)]
 
 
+@pytest.mark.ci
 def test_a_high_f_before_a_ramp_through_a_corner_is_another_mistake() -> None:
     """A lead that is only too fast for its F does not explain a ramp that comes from the wrong side."""
     fast = ("G1 X56. F1000", "G1 X40. C-20. F9000/X56. C20. F1000")
@@ -122,6 +123,7 @@ def test_a_high_f_before_a_ramp_through_a_corner_is_another_mistake() -> None:
     assert len(both.findings) > 1
 
 
+@pytest.mark.ci
 def test_a_missing_block_of_g40_behind_an_arc_is_one_finding() -> None:
     program = hexagon(("X36. C-10.392/C0/G40 X56./Z2.", "X36. C-10.392/G3 X33. C0 R20./Z2."))
     report = report_of(program, "fanuc-30i", CUTTER)
@@ -152,6 +154,7 @@ _STEPS = "G91 C10.392/X-36. C10.392/X-36. C-10.392/C-20.784/X36. C-10.392/X36. C
 _POSITIONS = HEX[HEX.index("C10.392") : HEX.index("G40 X56.")]
 
 
+@pytest.mark.ci
 @looped(
     ("path", "says"),
     [
@@ -167,6 +170,7 @@ def test_a_forgotten_g90(path: str, says: str) -> None:
     assert any(says in finding.message for finding in report.findings) or not says
 
 
+@pytest.mark.ci
 def test_a_missing_line_behind_an_arc_is_written_with_its_code() -> None:
     program = (
         "O1/G21 G98 G40/T0101/G97 S3000 M13/G28 H0/G0 X80. Z2. C0/G12.1/G1 X70. F1000/Z-4. F200/G42 X36. F150/C14./"
@@ -180,6 +184,7 @@ def test_a_missing_line_behind_an_arc_is_written_with_its_code() -> None:
     ), messages
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize("without_depth", range(4))
 def test_one_of_four_pockets_that_is_cut_in_air_is_one_finding(without_depth: int) -> None:
     centers = ((40, 0), (0, 20), (-40, 0), (0, -20))
@@ -196,6 +201,7 @@ def test_one_of_four_pockets_that_is_cut_in_air_is_one_finding(without_depth: in
     assert "a Z word for the depth is missing" in found[0].message
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize("lost", ["G1 X70. F1000", "G1 X70. F1000/Z-4. F200", "Z-4. F200"])
 def test_the_first_blocks_of_a_section_that_are_lost_are_one_finding(lost: str) -> None:
     program = (

@@ -154,6 +154,7 @@ HAAS_FAULTS = {
 }
 
 
+@pytest.mark.ci
 @looped(
     ("machine", "program", "tool"),
     [("okuma-osp", OKUMA, "1:radius=5,nose=0"), ("haas-lathe", HAAS, "1:radius=.25,nose=0")],

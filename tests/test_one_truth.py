@@ -311,6 +311,7 @@ def test_what_a_check_finds_in_one_of_two_programs_is_not_the_same_metal(
     assert ("is added" if is_order else rule) in result.stdout
 
 
+@pytest.mark.ci
 @looped(
     ("old", "new", "code"),
     [
@@ -330,6 +331,7 @@ def test_what_changes_speeds_and_corners_unseen_is_not_the_same_metal(
     assert certified(tmp_path, "siemens-transmit", *texts).exit_code == code
 
 
+@pytest.mark.ci
 @looped(
     ("old", "new"),
     [
@@ -345,6 +347,7 @@ def test_what_is_no_word_of_the_path_is_compared(old: str, new: str, tmp_path: P
     assert certified(tmp_path, "okuma-osp", *texts).exit_code == code
 
 
+@pytest.mark.ci
 @looped("control", ["fanuc-30i", "haas-lathe", "siemens-transmit", "gsk-988"])
 def test_the_plane_at_the_beginning_of_a_section_is_that_of_the_golden_trace(control: str, tmp_path: Path) -> None:
     sound, text = program(control), program(control, ("/G0 X60", "/G18/G0 X60"))
@@ -353,6 +356,7 @@ def test_the_plane_at_the_beginning_of_a_section_is_that_of_the_golden_trace(con
     assert certified(tmp_path, control, sound, text).exit_code == code
 
 
+@pytest.mark.ci
 @looped("control", ["fanuc-30i", "haas-lathe", "okuma-osp", "gsk-988"])
 def test_what_leaves_the_mode_in_another_program_is_not_judged(control: str, tmp_path: Path) -> None:
     end = "RTS" if control == "okuma-osp" else "M99"
@@ -367,6 +371,7 @@ def test_what_leaves_the_mode_in_another_program_is_not_judged(control: str, tmp
     assert (result.exit_code, result.stdout) == (2, "")
 
 
+@pytest.mark.ci
 @looped("words", ["G10 P1 R#500", "G10 P1 R5.", "#2001=5."])
 def test_an_offset_that_is_set_in_the_mode_is_no_path_of_the_tool_center(words: str, tmp_path: Path) -> None:
     text = program("fanuc-30i", ("/G42", f"/{words}/G42"))
@@ -376,6 +381,7 @@ def test_an_offset_that_is_set_in_the_mode_is_no_path_of_the_tool_center(words: 
     assert (result.exit_code, result.stdout) == (2, "")
 
 
+@pytest.mark.ci
 @looped("control", ["fanuc-30i", "haas-lathe", "siemens-transmit", "okuma-osp"])
 def test_a_warning_in_one_program_alone_is_not_the_same_metal(control: str, tmp_path: Path) -> None:
     sound = program(control)
@@ -389,6 +395,7 @@ def test_a_warning_in_one_program_alone_is_not_the_same_metal(control: str, tmp_
     assert (result.exit_code, "a check finds word-repeated" in result.stdout) == (0, True)
 
 
+@pytest.mark.ci
 @looped(("words", "verdict"), [("VC[VC500]=5", "unverified"), ("VC[2]=5", "pass"), ("VC[1+1]=VC500", "unverified")])
 def test_a_variable_by_its_index_is_the_variable(words: str, verdict: str) -> None:
     text = program("okuma-osp", ("O1", f"O1/VC2=4/{words}"), ("Z-4", "Z=-VC2"))
@@ -417,6 +424,7 @@ def test_a_variable_or_a_block_that_nobody_knows_leaves_all_unknown(
         assert compared(tmp_path, control, old, text).exit_code > 0
 
 
+@pytest.mark.ci
 @looped("control", ["fanuc-30i", "haas-lathe", "siemens-transmit"])
 def test_a_move_before_the_first_code_of_motion_is_a_move(control: str, tmp_path: Path) -> None:
     place = "/T1 D1" if control == "siemens-transmit" else "/T0101"
@@ -486,6 +494,7 @@ def test_what_follows_from_what_is_silenced_is_silenced(control: str) -> None:
     assert [finding.rule for finding in report.silenced] == ["rapid-in-polar"]
 
 
+@pytest.mark.ci
 @looped("control", ["fanuc-30i", "haas-lathe", "gsk-988", "okuma-osp"])
 def test_the_order_of_words_in_a_block_is_no_difference(control: str, tmp_path: Path) -> None:
     text = program(control)
@@ -499,6 +508,7 @@ def test_the_order_of_words_in_a_block_is_no_difference(control: str, tmp_path: 
     assert compared(tmp_path, control, *texts).exit_code > 0
 
 
+@pytest.mark.ci
 @looped("control", ["fanuc-30i", "haas-lathe", "siemens-transmit", "okuma-osp"])
 def test_the_feed_of_a_first_move_is_compared(control: str, tmp_path: Path) -> None:
     dot = "." if control == "haas-lathe" else ""
@@ -524,6 +534,7 @@ def test_a_program_that_nobody_knows_is_rewritten_by_no_command(control: str, ca
         assert (result.exit_code, result.stdout) == (2, ""), command
 
 
+@pytest.mark.ci
 @looped(
     ("control", "unused", "used"),
     [
@@ -539,6 +550,7 @@ def test_a_feed_that_no_move_runs_at_is_without_weight(control: str, unused: str
     assert report_of(text.replace(f" {used}\n", "\n"), control, CUTTER).verdict == "unverified"
 
 
+@pytest.mark.ci
 @looped(
     ("control", "place", "known", "unknown"),
     [
@@ -561,6 +573,7 @@ def test_a_value_that_is_not_known_is_in_no_golden_trace(
     assert certified(tmp_path, control, sound, text, verdict=verdict).exit_code == 1
 
 
+@pytest.mark.ci
 @looped("control", ["fanuc-30i", "haas-lathe", "gsk-988"])
 def test_the_center_of_an_arc_outside_of_sections_is_compared(control: str, tmp_path: Path) -> None:
     dot = "." * (control == "haas-lathe")
@@ -570,6 +583,7 @@ def test_the_center_of_an_arc_outside_of_sections_is_compared(control: str, tmp_
     assert certified(tmp_path, control, sound, text).exit_code == 1
 
 
+@pytest.mark.ci
 @looped(("control", "call"), [("fanuc-30i", "M98 P2000"), ("haas-lathe", "M98 P2000"), ("siemens-transmit", "L2000")])
 def test_two_programs_that_are_both_missing_are_not_the_same(control: str, call: str, tmp_path: Path) -> None:
     sound, text = (program(control, ("/G0 X60", f"/{words}/G0 X60")) for words in (call, call.replace("2000", "2001")))
@@ -577,6 +591,7 @@ def test_two_programs_that_are_both_missing_are_not_the_same(control: str, call:
     assert compared(tmp_path, control, sound, sound.replace("Z-4", "Z-04")).exit_code == 0
 
 
+@pytest.mark.ci
 @looped("words", ["$TC_DP6[1,1]=5", "DISC=50", "$P_UIFR[1,X,TR]=1"])
 def test_what_may_move_the_path_and_is_not_simulated_is_not_unrolled(words: str, tmp_path: Path) -> None:
     control = "siemens-transmit"
@@ -587,6 +602,7 @@ def test_what_may_move_the_path_and_is_not_simulated_is_not_unrolled(words: str,
     assert (result.exit_code, result.stdout) == (2, "")
 
 
+@pytest.mark.ci
 @looped(
     ("control", "words"),
     [
@@ -607,6 +623,7 @@ def test_a_part_that_depends_on_an_unknown_condition_is_not_known(control: str, 
     assert in_one_line(tables_of(text, control, CUTTER)).startswith("hexagon, 36.000")
 
 
+@pytest.mark.ci
 @looped(
     ("control", "first", "last"),
     [
@@ -625,12 +642,14 @@ def test_the_words_of_a_block_may_stand_in_two_blocks(control: str, first: str, 
         assert certified(tmp_path, control, text, other).exit_code == code
 
 
+@pytest.mark.ci
 def test_a_word_that_belongs_to_a_code_stands_beside_it(tmp_path: Path) -> None:
     sound, text = program("haas-lathe"), program("haas-lathe", ("P3000 M133", "P3000/M133"))
     assert compared(tmp_path, "haas-lathe", sound, text).exit_code > 0
     assert certified(tmp_path, "haas-lathe", sound, text).exit_code == 1
 
 
+@pytest.mark.ci
 @looped("control", ["fanuc-30i", "haas-lathe", "gsk-988"])
 def test_a_distance_from_where_it_is_not_known_is_compared(control: str, tmp_path: Path) -> None:
     texts = [program(control, ("/T0101", f"/G0 {words}/T0101")) for words in ("W0", "W-1.", "W-1", "W-2.", "U5.")]
@@ -640,6 +659,7 @@ def test_a_distance_from_where_it_is_not_known_is_compared(control: str, tmp_pat
         assert certified(tmp_path, control, texts[old], changed).exit_code == code
 
 
+@pytest.mark.ci
 @looped(
     ("control", "words"), [("siemens-transmit", "R[R500]=4"), ("okuma-osp", "VC[VC500]=5"), ("fanuc-30i", "#[#500]=5.")]
 )
@@ -664,6 +684,7 @@ def test_what_displaces_the_contour_is_not_written(words: str, tmp_path: Path) -
         assert (result.exit_code, result.stdout) == (2, ""), command
 
 
+@pytest.mark.ci
 def test_a_frame_that_ends_at_the_switch_is_no_depth(tmp_path: Path) -> None:
     control = "siemens-transmit"
     plain = program(control)
@@ -675,6 +696,7 @@ def test_a_frame_that_ends_at_the_switch_is_no_depth(tmp_path: Path) -> None:
         assert certified(tmp_path, control, plain, text).exit_code == 1
 
 
+@pytest.mark.ci
 @looped(
     ("control", "old", "new"),
     [
@@ -697,6 +719,7 @@ def test_the_lead_of_a_thread_and_the_angle_of_a_spindle_are_orders(
     assert certified(tmp_path, control, sound, text).exit_code == 1
 
 
+@pytest.mark.ci
 @looped("control", ["fanuc-30i", "haas-lathe", "siemens-transmit"])
 def test_block_skip_is_that_of_the_golden_trace(control: str, tmp_path: Path) -> None:
     sound = program(control).replace("\nG0 X60", "\n/M8\n/M9\nG0 X60", 1)
@@ -708,6 +731,7 @@ def test_block_skip_is_that_of_the_golden_trace(control: str, tmp_path: Path) ->
         assert certified(tmp_path, control, sound, text).exit_code == code
 
 
+@pytest.mark.ci
 @looped("control", ["fanuc-30i", "haas-lathe", "gsk-988", "fagor-8055t"])
 def test_the_order_of_axes_from_where_they_are_not_known_is_no_difference(control: str, tmp_path: Path) -> None:
     if control == "fagor-8055t":
@@ -724,6 +748,7 @@ def test_the_order_of_axes_from_where_they_are_not_known_is_no_difference(contro
         assert certified(tmp_path, control, sound, text).exit_code == code
 
 
+@pytest.mark.ci
 @looped(
     ("words", "verdict"),
     [
@@ -740,6 +765,7 @@ def test_an_offset_of_another_tool_leaves_nothing_open(words: str, verdict: str,
     assert f"{words.removesuffix('.')} is added" in result.stdout
 
 
+@pytest.mark.ci
 @looped(
     ("old", "new"),
     [("X0 Y20.785", "X0 Y20.785 RND=R500"), ("/G42", "/RNDM=R500/G42"), ("X0 Y20.785", "X0 Y20.785 CHR=R500")],
@@ -752,6 +778,7 @@ def test_corners_of_an_unknown_size_are_no_corners_of_the_part(old: str, new: st
     assert not in_one_line(tables_of(text, "siemens-transmit", CUTTER))
 
 
+@pytest.mark.ci
 @looped(
     ("control", "deeper"),
     [
@@ -779,6 +806,7 @@ CITIZEN = (
 _SECTION = CITIZEN[CITIZEN.index("/G12.1") : CITIZEN.index("/M5")]
 
 
+@pytest.mark.ci
 @looped(
     ("control", "text"),
     [
@@ -799,6 +827,7 @@ def test_what_a_rewriter_writes_is_to_a_check_what_it_was(control: str, text: st
     assert compared(tmp_path, control, old, new).exit_code == 0
 
 
+@pytest.mark.ci
 @looped("control", ["fanuc-30i", "siemens-transmit", "okuma-osp"])
 def test_a_straight_move_outside_of_sections_may_be_divided(control: str, tmp_path: Path) -> None:
     dot = "." if control in ("fanuc-30i", "haas-lathe") else ""
@@ -818,6 +847,7 @@ def test_a_straight_move_outside_of_sections_may_be_divided(control: str, tmp_pa
         assert certified(tmp_path, control, sound, text).exit_code == code
 
 
+@pytest.mark.ci
 @looped(
     ("control", "words", "verdict"),
     [
@@ -840,6 +870,7 @@ def test_a_work_offset_of_no_section_leaves_nothing_open(control: str, words: st
     assert report_of(text, control, CUTTER).verdict == verdict
 
 
+@pytest.mark.ci
 @looped("target", ["haas-lathe", "okuma-osp", "mazak-integrex"])
 def test_what_is_a_note_on_one_lathe_and_fails_a_program_on_another_is_to_decide(target: str, tmp_path: Path) -> None:
     (file,) = written(tmp_path, program("takisawa", (" M200", ""), ("M13", "M70")))

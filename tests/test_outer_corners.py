@@ -124,6 +124,7 @@ def sampled(moves: Moves) -> np.ndarray:
     return np.concatenate([points_along(*move, 60) for move in zip(*moves.shape, strict=True)])
 
 
+@pytest.mark.ci
 @looped("shape", SHAPES.values(), ids=SHAPES)
 def test_with_g450_the_tool_stays_r_beside_the_contour(shape: list[Element]) -> None:
     """Also at its corners: an arc of R about the programmed point."""
@@ -158,6 +159,7 @@ def test_rates_of_c_are_those_of_the_way(name: str, code: str) -> None:
         assert rate == pytest.approx(FEED * steps.max(), rel=1e-3)
 
 
+@pytest.mark.ci
 @looped("shape", SHAPES.values(), ids=SHAPES)
 def test_with_g451_both_ways_are_made_longer_up_to_where_they_meet(shape: list[Element]) -> None:
     """A line stays a line beside it, an arc an arc about its center; sharper turns than 100 deg become arcs of R."""

@@ -134,6 +134,7 @@ def test_the_cutter_stays_in_the_corners_of_a_pocket() -> None:
     assert [left.text for left in found.left_standing] == ["R2.000 of the cutter in 4 inside corners"]
 
 
+@pytest.mark.ci
 @looped(("block", "written"), [("X-30. C8.660", "X#5041 C8.660"), ("C8.660", "C#500")])
 def test_a_place_that_is_not_known_is_told(block: str, written: str) -> None:
     shapes = made(HEXAGON.replace(block, written, 1), "8:radius=4")

@@ -94,6 +94,7 @@ def test_what_contradicts_nothing(comment: str) -> None:
     assert messages(f"T0101 ({comment})", HEXAGON) == []
 
 
+@pytest.mark.ci
 def test_a_comment_of_another_tool_or_section_is_not_of_this_one() -> None:
     assert messages("T0202 (HEX 24 AF)\nG1 Z2. F100\nT0101", HEXAGON) == []
     assert messages("(HEX 24 AF)\nG97 S100\nT0101", HEXAGON) == []
@@ -234,6 +235,7 @@ def test_sound_titles_and_bars(comment: str, form: str) -> None:
     assert messages(f"T{call}", HEXAGON, title=title) == []
 
 
+@pytest.mark.ci
 def test_a_title_counts_for_one_shape() -> None:
     small = HEXAGON.replace("22.", "20.").replace("6.351", "5.774").replace("12.702", "11.547").replace("Z-5.", "Z-3.")
     deeper = HEXAGON.replace("Z-5.", "Z-8.")
@@ -249,6 +251,7 @@ def test_a_title_counts_for_one_shape() -> None:
     assert messages("T0101 (EM8 ROUGH)\n(HEX 21 AF)", HEXAGON) == []
 
 
+@pytest.mark.ci
 def test_a_diameter_in_the_title() -> None:
     turning = "T0202\nG97 S500 M3\nG0 X34. Z2.\nG1 X30. F100\nZ-20.\nG0 X60. Z50.\nM5\nT0101"
     (message,) = messages("T0101", PIN, title="O1 (SHAFT DIA 20)")

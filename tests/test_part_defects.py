@@ -65,6 +65,7 @@ def test_a_sound_program_makes_its_part(family: str) -> None:
     assert not judged(plan, program, plan.allowed).differs
 
 
+@pytest.mark.ci
 @looped("kind", list(KINDS)[::3], one_in=9)
 def test_a_defect_of_each_kind_can_be_drawn(kind: str) -> None:
     defect = drawn_defect(3, (kind,))

@@ -223,6 +223,7 @@ def test_paths_of_the_center_are_put_together_likewise(first: float, control: st
     assert shape.values["apart"] == pytest.approx(24.0, abs=0.004)
 
 
+@pytest.mark.ci
 @looped("entry", [5.0, 10.0, 45.0])
 def test_a_closed_path_is_the_same_at_any_angle(entry: float) -> None:
     shape, *_ = made([Section(polygon(6, 46.0), entry, side=40, approach=60.0)], radius=8.0)

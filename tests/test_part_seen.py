@@ -48,6 +48,7 @@ def is_seen(shape: Overlapped, drift: complex = 0) -> bool:
     return shapes[0].inside == is_pocket and all(abs(area - shape.area) <= slack for area in areas)
 
 
+@pytest.mark.ci
 @looped("turned", [0.0, 33.0], one_in=12)
 @looped("control", BY_MACHINE)
 def test_a_quadrilateral_with_corners_of_chords_that_ends_past_its_start(control: str, turned: float) -> None:

@@ -181,6 +181,7 @@ def test_a_distance_that_is_certain_spares_cells_and_changes_nothing() -> None:
     assert bounded.cells > plain.cells
 
 
+@pytest.mark.ci
 @looped("seed", range(40), one_in=5)
 def test_a_long_path_is_measured_between_the_pairs_that_every_run_has(
     seed: int, monkeypatch: pytest.MonkeyPatch

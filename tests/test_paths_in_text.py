@@ -282,6 +282,7 @@ def run(*arguments: str, charset: str = "utf-8", **environment: str) -> Result:
     return CliRunner(charset=charset).invoke(main, [*arguments], env={"TERM": "xterm", **environment})
 
 
+@pytest.mark.ci
 def test_check_shows_paths_behind_the_findings() -> None:
     path = str(SAMPLES / "c_axis_too_fast.nc")
     result = run("check", "--show", "path", path)

@@ -68,6 +68,7 @@ def test_a_zero_that_moves_within_the_section_is_not_known() -> None:
     assert section.writing == Writing(virtual="Y", origin=None)
 
 
+@pytest.mark.ci
 def test_each_arc_has_its_center() -> None:
     section = section_of(ARCS, "8:radius=4")
     assert [center for center in section.moves.center if center is not None] == [(0.0, 0.0)] * 2

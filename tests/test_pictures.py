@@ -239,6 +239,7 @@ def test_rates_on_arcs_off_the_center_have_their_peaks(i: float, sense: str) -> 
     assert whole == pytest.approx(sign * 360 * (radius > center), abs=1.5)
 
 
+@pytest.mark.ci
 def test_where_override_acts_c_is_held_and_f_goes_down() -> None:
     """On a flat 1 from the center F is lowered so that C turns at its limit; what it turns by in all is the same."""
     limits = {"c_feed": 2000.0, "automatic_override": True, "override_share": 100.0}

@@ -154,6 +154,7 @@ def test_under_override_the_tool_waits_in_the_center() -> None:
     assert t[-1] == pytest.approx(section.time, abs=1e-3)
 
 
+@pytest.mark.ci
 def test_where_c_is_held_its_rate_is_the_slope_of_its_angle() -> None:
     limits = {"c_feed": 2000.0, "automatic_override": True, "override_share": 100.0}
     section = section_of(HEAD + "G1 X2. C10. F500\nC-10. F400\nX80.\nG13.1\nM30\n", changes={"limits": limits})

@@ -256,6 +256,7 @@ def test_very_long_files_are_shown_in_part(monkeypatch: pytest.MonkeyPatch) -> N
 # ---- the center, in words ----
 
 
+@pytest.mark.ci
 @looped(
     ("blocks", "said"),
     [

@@ -473,6 +473,7 @@ def test_unknown_feed_and_no_feed() -> None:
 # ---- the machine's axes ----
 
 
+@pytest.mark.ci
 @few
 @given(point, st.floats(-720, 720))
 def test_points_of_x_and_c(place: complex, entry: float) -> None:

@@ -166,6 +166,7 @@ def test_without_compensation_no_radius_is_needed() -> None:
     assert values(found) == pytest.approx({**closed_form(80, 20, 200, 0), "ramp_used": None})
 
 
+@pytest.mark.ci
 def test_no_offset_at_all() -> None:
     [found] = sections(PROGRAM.replace("T0101", "T0100").replace("G42 ", ""))
     assert (found.offset, found.radius, found.radius_source) == (None, None, "none")

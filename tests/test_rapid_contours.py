@@ -73,6 +73,7 @@ def test_positioning_is_sound(machine: str, blocks: tuple[str, ...]) -> None:
     assert rules(machine, *blocks) == []
 
 
+@pytest.mark.ci
 def test_where_the_face_is_below_z0_it_begins_there() -> None:
     program = (
         "T1\nG94 G0 X30. C0 Z5.\nG12.1\nG0 X30. C0 Z-3.\n" + sides().replace("Y", "C") + "\nX30. C0\nG0 Z5.\nG13.1\n"

@@ -66,6 +66,7 @@ def test_most_slips_in_a_regular_contour_are_noticed(name: str) -> None:
     assert noticed >= 0.7 * written
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize(
     "seeds",
     [
@@ -82,6 +83,7 @@ def test_what_differs_on_purpose_is_silent(seeds: Sequence[int]) -> None:
         assert not [message for rule, message in found if rule in RULES], (seed, contour.family)
 
 
+@pytest.mark.ci
 @looped(
     "contour",
     [
@@ -118,6 +120,7 @@ def test_a_slip_of_the_pen(written: str, meant: float, kind: str | None) -> None
     assert (slip.kind if slip else None) == kind
 
 
+@pytest.mark.ci
 @looped(
     ("written", "how"),
     [("X1.0426", "two digits are swapped"), ("X1.0346", "a digit is wrong"), ("X1.246", "a digit is missing")],
@@ -133,6 +136,7 @@ def test_the_number_that_is_meant_has_all_of_its_digits(written: str, how: str) 
     assert f"{how}: with X1.0246 it would be a regular pentagon" in slip.message
 
 
+@pytest.mark.ci
 @looped(
     ("written", "how"),
     [
@@ -153,6 +157,7 @@ def test_a_number_that_one_slip_writes_exactly_is_none_of_another_that_is_near(w
     assert f"{how}: with X-25.4 it would be a regular hexagon" in slip.message
 
 
+@pytest.mark.ci
 def test_a_block_of_increments_that_stands_there_twice_is_told() -> None:
     """A heptagon, which begins and ends in the middle of a side."""
     blocks = (

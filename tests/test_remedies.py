@@ -83,6 +83,7 @@ def test_what_the_file_lacks_has_no_weight() -> None:
     assert report.verdict == "pass"
 
 
+@pytest.mark.ci
 @looped(("feed", "key"), [("900", "no c-feed-above-limit"), ("90000", "c-feed-above-limit")])
 def test_the_limit_of_c_is_asked_for_where_it_belongs(feed: str, key: str) -> None:
     assert "limits.c_feed in lathe.toml" in messages("", "M8", feed.replace("900", "9000", 1))[key]

@@ -66,6 +66,7 @@ def feeds(text: str) -> list[float]:
 CONTOURS = {"hexagon": (hexagon(), 13), "slot": (slot(), 5), "oval": (oval(), 5)}
 
 
+@pytest.mark.ci
 @pytest.mark.one_in(12)
 @pytest.mark.parametrize("name", CONTOURS)
 @pytest.mark.parametrize("inverse", [False, pytest.param(True, marks=pytest.mark.ci)])

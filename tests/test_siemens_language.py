@@ -302,6 +302,7 @@ def test_so_it_is_beside_statements(block: str) -> None:
     assert rules(report(block)) == ["macro-syntax"]
 
 
+@pytest.mark.ci
 @looped("block", ["X 40", "X= 15", "Z -5", "N10 G1 X40 Y 1", "T 8", "G1 Z=5 ; 1 2"])
 def test_a_blank_behind_an_address_is_none(block: str) -> None:
     assert rules(report(block)) == []
@@ -314,6 +315,7 @@ def test_a_list_of_axes_is_no_expression(block: str) -> None:
     assert (rules(of), [missing.reason for missing in of.not_evaluated if missing.matters]) == ([], [])
 
 
+@pytest.mark.ci
 def test_a_value_in_parentheses_still_is_one() -> None:
     assert rules(report("R1=(X)")) == ["macro-syntax"]
     assert rules(report("OSCTRL[Z]=(3+")) == ["macro-syntax"]

@@ -174,6 +174,7 @@ def test_what_is_cut_later_is_not_left() -> None:
     assert [rule for _, rule in rules(above)] == ["material-left"]
 
 
+@pytest.mark.ci
 def test_what_another_tool_cuts_is_not_left() -> None:
     direct = "G1 X80. C0. F300/Z-2./G42 X40. C0./C20./X-40./C-20./X40./C0./G40 X80./Z2."
     finish = f"G13.1/G0 X200. Z50./T0202/G0 X200. Z2. C0/G12.1/{direct}"

@@ -46,6 +46,7 @@ def test_half_of_a_groove_is_room_for_the_cutter(radius: float, width: float) ->
     assert not found.never.any()
 
 
+@pytest.mark.ci
 def test_only_loops_that_are_cut_into_are_asked_for() -> None:
     """Of three grooves of 6, 10 and 3 mm the middle one has room for R 4."""
     found = fitting_of(groove(6) + groove(10) + groove(3))

@@ -249,6 +249,7 @@ def test_passes_of_twins(radius: float, cutter: float, start: float, infeed: flo
     assert radii_of(f"{before}G12.1{halved}", f"2:radius={cutter}", parameters={"5450#6": 1}) == expected
 
 
+@pytest.mark.ci
 @looped("angle", [0.0, 30.0, 137.0, 250.0])
 @looped(("start", "code"), [(62.0, "G42"), (25.0, "G41")])
 def test_passes_of_a_turned_twin(angle: float, start: float, code: str) -> None:
@@ -297,6 +298,7 @@ G13.1
 """
 
 
+@pytest.mark.ci
 def test_the_rate_of_c_on_a_pass_is_named() -> None:
     """The pass 24 mm off a wall at 40 mm runs 11 mm off the center: 600 / 11 mm is 3125 deg/min."""
     report = report_of(POCKET.format("8."), "gsk-988", "2:radius=5,nose=0", changes={"limits": {"c_feed": 2000}})
@@ -372,12 +374,14 @@ def test_a_pass_does_not_fit_where_the_contour_does_not() -> None:
     assert "infeed-pass-does-not-fit" in follows
 
 
+@pytest.mark.ci
 def test_without_a_radius_passes_are_not_judged() -> None:
     report = report_of(SLOT.format("120.", "4.", ROUND, "120."), "gsk-988")
     assert "infeed-pass-does-not-fit" not in [rule for _, rule in said(report)]
     assert "infeed-pass-does-not-fit" in [entry.rule for entry in report.not_evaluated]
 
 
+@pytest.mark.ci
 def test_a_stock_that_is_cleared_is_cleared_by_all_passes() -> None:
     """A pass that runs outside of the bar cuts air; a start point inside of it has a finding of its own."""
     program = POCKET.replace("X20.", "X140.").replace("G41", "G42").format("4.")

@@ -72,11 +72,13 @@ def test_the_other_side_is_one_finding(section: str, units: str, machine: str) -
     assert "; write " + ("G42" if "G42" in section else "G41") in finding.message
 
 
+@pytest.mark.ci
 def test_g41_in_a_block_of_its_own_is_the_word_at_fault() -> None:
     wrong = SOUND["square"].replace("G42 X40.", "G41/X40.")
     assert serious(report(wrong)) == [(7, MIRRORED)]
 
 
+@pytest.mark.ci
 def test_of_two_loops_the_wrong_one_is_named() -> None:
     wrong = SOUND["square"].replace("/Z2./G13.1", "/G41 X40./C20./X-40./C-20./X40./C0/G40 X100./Z2./G13.1")
     assert serious(report(wrong)) == [(14, MIRRORED)]

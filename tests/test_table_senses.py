@@ -75,6 +75,7 @@ def test_ends_that_are_rounded(radius: float, decimals: int) -> None:
     assert [rule for _, rule, _ in told(hexagon(radius, decimals, 2), radius / 2)] == [RULE]
 
 
+@pytest.mark.ci
 def test_in_inch() -> None:
     head = HEAD.replace("G21", "G20").replace("X150. Z2.", "X6. Z.1").replace("Z-5.", "Z-.2").replace("F300.", "F12.")
     section = hexagon(3, 4, 4, scale=1 / 25.4).replace("F200.", "F8.")
@@ -88,6 +89,7 @@ def test_a_notch_too_narrow_for_the_cutter_follows(section: str) -> None:
     assert (rule, severity) == (RULE, "error")
 
 
+@pytest.mark.ci
 def test_the_rest_of_a_circle_needs_no_other_arc() -> None:
     """By I and J a single corner that is the wrong way round goes back along both its walls."""
     section = "G42 X40. C0. F200./C10./G2 X20. C20. I-10. J0./G1 X-40./C-20./X40./C0./G40 X80."
@@ -116,6 +118,7 @@ def test_contours_that_mean_their_arcs(section: str) -> None:
     assert RULE not in [rule for _, rule, _ in told(section, 1.5)]
 
 
+@pytest.mark.ci
 def test_each_depth_is_a_contour_of_its_own() -> None:
     """The same mistake at two depths is the only one at each."""
     around = swapped(BY_RADIUS, 1).split("/", 1)[1].replace("/G40 X80.", "")
@@ -123,11 +126,13 @@ def test_each_depth_is_a_contour_of_its_own() -> None:
     assert [rule for _, rule, _ in told(section, 4)] == [RULE, RULE]
 
 
+@pytest.mark.ci
 def test_without_compensation_nothing_is_said() -> None:
     section = swapped(BY_RADIUS, 1).replace("G42 ", "").replace("G40 ", "")
     assert RULE not in [rule for _, rule, _ in told(section, 4)]
 
 
+@pytest.mark.ci
 def test_a_radius_is_not_needed() -> None:
     text = HEAD + swapped(BY_RADIUS, 1).replace("/", "\n") + "\n" + END
     assert [found.rule for found in report_of(text).findings if found.severity == "warning"] == [RULE]

@@ -97,6 +97,7 @@ def test_in_inch_and_where_rapid_traverse_is_allowed() -> None:
     assert (finding.severity, finding.count) == ("error", 3)
 
 
+@pytest.mark.ci
 def test_walls_near_moves_are_found_alike_one_by_one_and_all_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
     pocket = "G41 X16. C0/C6./X-16./C-6./X16./C0/G40 X4. C1."
     blocks = f"Z-3./{HEXAGON}/C21./X-80./C60./X90./C0/Z2./X4. C1./Z-6./{pocket}/X30."

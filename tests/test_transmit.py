@@ -274,6 +274,7 @@ def test_else_the_mode_was_to_be_left_before_the_tool(off: str, leave: str, canc
     assert (5, "polar-never-left") in of_two_tools("T9 D1", off, leave, cancel)
 
 
+@pytest.mark.ci
 def test_the_second_tool_has_a_contour_of_its_own() -> None:
     """A drill may go into the part of the first tool; in rapid traverse it may not."""
     contour = "G0 X14 Y0\nG0 Z-1\nG1 G42 X5 Y0 F200\nY5\nX-5\nY-5\nX5\nY0\nG40 X14\nG0 Z5"

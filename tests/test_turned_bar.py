@@ -126,6 +126,7 @@ def test_slots_that_are_lifted_out_of_are_sound(cs: tuple[str, ...], end: str) -
     assert "pass-ends-inside-bar" not in [rule for rule, _ in told(program, 3, diameter=40)]
 
 
+@pytest.mark.ci
 @looped("after", ["G40 X60. F1500/Z2./", "Z2./G40 X60. F1500/"])
 def test_a_flat_that_ends_inside_is_told(after: str) -> None:
     flat = f"G1 X60. C28. F1500/Z-4. F500/G41 X20. F200/C{{c}}/{after}"
@@ -194,6 +195,7 @@ def test_more_sound_programs_that_turn_first_are_told_nothing(seed: int) -> None
     assert report_words(drawn(seed)) == []
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_slip_against_the_metal_is_told(kind: str) -> None:
     slips = (slipped(drawn(seed), kind) for seed in range(6000, 6400))

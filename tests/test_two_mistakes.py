@@ -46,6 +46,7 @@ CORNERS: list[Slips] = [
 ]
 
 
+@pytest.mark.ci
 @looped("slips", CORNERS)
 def test_two_corners_beside_a_regular_polygon_are_told_with_their_words(slips: Slips) -> None:
     head = [line.replace("X60. Z2.", "X80. Z2.").replace("G1 X50.", "G1 X31.876 C-8.541") for line in HEAD]
@@ -60,6 +61,7 @@ def test_two_corners_beside_a_regular_polygon_are_told_with_their_words(slips: S
     assert f"with {needed[first]}, and with {needed[second]} in line {second}, it" in findings[0].message
 
 
+@pytest.mark.ci
 @looped(("block", "wrong", "rule"), HIDING)
 def test_a_wrong_word_beside_one_that_makes_the_contour_doubtful_is_told(block: str, wrong: str, rule: str) -> None:
     slips = {block: wrong, "G3 X40. C-7. R3.": "G3 X20. C-7. R3."}
@@ -76,6 +78,7 @@ def test_a_high_feed_beside_rapid_traverse_in_the_mode_is_told() -> None:
     assert {"rapid-in-polar", "c-feed-above-limit"} <= {finding.rule for finding in report.findings}
 
 
+@pytest.mark.ci
 @looped(("block", "wrong", "rule"), HIDING)
 def test_nothing_is_told_beside_one_mistake(block: str, wrong: str, rule: str) -> None:
     written = [wrong if line == block else line for line in ROUNDED]
@@ -96,6 +99,7 @@ CROSS = "G71 G90 G40/T2 D1/G94/SETMS(2) S2=3000 M2=3/G0 C0/G0 X62. Z2./G0 Z-5.5/
 CROSS += f"/{_CROSS}/G1 X19.5 Y0/G40 G1 X28.5 Y0 F800./TRAFOOF/DIAMON/G0 Z2."
 
 
+@pytest.mark.ci
 @looped(
     ("machine", "tool", "text", "slips", "lines"),
     [

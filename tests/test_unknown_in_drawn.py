@@ -62,6 +62,7 @@ def programs_of(seed: int, machine: str = "") -> tuple[str, list[str], str, list
     return machine, tools, text, changed
 
 
+@pytest.mark.ci
 @looped(("seed", "machine"), [(1150, "mitsubishi-m700"), (1270, "colchester")])
 def test_what_an_unknown_section_would_make_is_no_fault_elsewhere(seed: int, machine: str) -> None:
     machine, tools, _, changed = programs_of(seed, machine)

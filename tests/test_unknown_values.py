@@ -265,6 +265,7 @@ def test_what_lies_between_two_sections_is_no_fault_of_either(control: str, word
     assert (report.verdict, [finding.rule for finding in report.findings]) == ("unverified", [])
 
 
+@pytest.mark.ci
 @looped("word", ["C#500.", "H#500.5"])
 @looped("control", ["fanuc-30i", "gsk-988", "mitsubishi-m700"])
 def test_c_is_not_known_after_a_block_that_is_not_executed(control: str, word: str) -> None:

@@ -262,6 +262,7 @@ def test_a_full_circle_about_the_center_is_two_blocks_of_c() -> None:
     assert "\nG1 X40. C0 F200\nC180. F572.95\nC360.\nC180.\nC0\n" in text
 
 
+@pytest.mark.ci
 def test_c_counts_on_over_full_turns_or_rolls_over() -> None:
     program = f"{HEAD}G1 X40. F200\nG3 X40. C0 I-20. J0\nG3 X40. C0 I-20. J0\n{END}"
     text, said = unrolled(program)

@@ -91,6 +91,7 @@ def test_a_mode_that_is_not_simulated_is_named_and_not_judged(word: str, address
     assert report.not_evaluated[0].reason.startswith(f"{name} beside G12.1 makes another mode of it")
 
 
+@pytest.mark.ci
 def test_rules_of_the_virtual_axis_name_that_of_the_section() -> None:
     program = HEAD + "G12.1 D1 E=C\nG1 X10. F200\nG3 X5. R5.\nG2 X8. R9.\nX-5.\nX5.\nX-5.\nG13.1\n" + END
     report = report_of(program, "citizen")

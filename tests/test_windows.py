@@ -244,6 +244,7 @@ def test_a_tilde_is_the_folder_of_the_user(monkeypatch: pytest.MonkeyPatch, tmp_
     assert wildcards.expanded(["~/*.nc"]) == [os.path.join(tmp_path, "a.nc")]  # noqa: PTH118
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize(("on_windows", "said"), [(True, "2 files checked"), (False, "?.nc: No such file")])
 def test_only_on_windows_the_command_expands_them(
     on_windows: bool, said: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]

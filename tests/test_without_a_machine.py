@@ -78,6 +78,7 @@ def test_a_lathe_that_is_chosen_is_checked_as_such(name: str, program: str, rule
 G12 = "O1\nG98 G0 X60. C0\nT0808\nG12.1\n{}\nG13.1\nM30\n"
 
 
+@pytest.mark.ci
 @looped(
     "moves",
     [

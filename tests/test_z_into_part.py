@@ -84,6 +84,7 @@ def test_what_is_made_is_told_to_its_deepest_z() -> None:
     assert in_one_line(tables) == "hexagon, 14.000 across flats, to Z6.000"
 
 
+@pytest.mark.ci
 def test_the_face_of_the_job_is_as_the_program_writes_it() -> None:
     job = {"stock": {"diameter": 20.0, "face": -0.5}}
     text = program(milling("-6.", begin="-8.", retract="-8."))
