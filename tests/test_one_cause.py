@@ -822,6 +822,40 @@ def test_one_mistake_that_shows_in_many_places_is_one_finding(program: str, mach
     assert [found.rule for found in serious(report)] == [rule]
 
 
+#: A boss in two depths, with an approach before each; the digits of X in one of them are shifted.
+BOSS = "G42 X40. F200/G3 X-40. C0 R20./X40. C0 R20./G40 G1 X56. F1000"
+TWO_DEPTHS = f"G0 X70. Z2. C0/G12.1/G1 X56. F1000/Z-2./{BOSS}/Z2./{{}}/Z-4./{BOSS}/Z2./G13.1"
+TURNED = "T0202/G99 G97 S800 M3/G0 X46. Z2./G1 Z-12. F.2/G0 X60./Z2./M5/T0101/G98"
+
+
+@pytest.mark.ci
+@looped("bar", [[], TURNED.split("/")], ids=["unknown bar", "turned bar"])
+@looped("machine", ["fanuc", "gsk-988", "siemens-iso"])
+def test_an_approach_at_a_wrong_place_is_one_finding(machine: str, bar: list[str]) -> None:
+    def told(approach: str) -> list[str]:
+        lines = [*HEAD, *bar, *TWO_DEPTHS.format(approach).split("/"), *END]
+        return [found.rule for found in serious(report_of("\n".join(lines) + "\n", machine, "1:radius=4"))]
+
+    assert told("X56.") == []
+    assert told("X5.6") == ["approach-inside-stock" if bar else "start-up-sweeps-contour"]
+
+
+@pytest.mark.ci
+@looped("machine", ["fanuc", "gsk-988", "siemens-iso"])
+def test_a_finish_that_goes_down_in_its_boss_is_one_finding(machine: str) -> None:
+    """The roughing before it says that the cutter goes down into metal there."""
+
+    def told(approach: str) -> list[str]:
+        rough = f"G0 X70. Z2. C0/G12.1/G1 X56. F1000/Z-4./{BOSS.replace('40.', '41.').replace('R20.', 'R20.5')}"
+        finish = f"T0202/G0 X70. Z2. C0/G12.1/G1 {approach} F1500/Z-4./{BOSS}/Z2./G13.1"
+        lines = [*HEAD[:1], "(BAR D46)", *HEAD[1:], *f"{rough}/Z2./G13.1/G0 Z50./{finish}".split("/"), *END]
+        program = "\n".join(lines) + "\n"
+        return [found.rule for found in serious(report_of(program, machine, "1:radius=4", "2:radius=4"))]
+
+    assert told("X56.") == []
+    assert told("X5.6") == ["start-up-sweeps-contour"]
+
+
 # ---- causes ----
 
 

@@ -182,7 +182,7 @@ SPANS: dict[str, Callable[[Tables], Rows] | None] = {
     "narrow loop": lambda tables: tables.ramps.narrow_loop,
     "loop": lambda tables: tables.ramps.loop,
     "compensation": lambda tables: tables.since.compensation,
-    "first start-up": lambda tables: tables.ramps.first_start_up,
+    "start-up ahead": lambda tables: tables.ramps.start_up_ahead,
     "tool call": lambda tables: tables.since.tool_call,
     "modal state": lambda tables: tables.since.modal_state,
     "plane": lambda tables: tables.since.plane,

@@ -48,16 +48,11 @@ class Ramps(Columns, frozen=True):
         return np.where(self.tool_center.interferes_by_rounding, -1, self.loop)
 
     @cached_property
-    def first_start_up(self) -> Rows:
-        """The section of the rows from its G12.1 to its first start-up; -1 for other rows."""
+    def start_up_ahead(self) -> Rows:
+        """The same number for a start-up and the rows of its section that lead up to it; -1 outside sections."""
         trace = self.trace
-        section = trace.mode.whole_section
-        begun: Rows = np.cumsum(trace.compensation.starts_up) - trace.compensation.starts_up
-        inside = np.flatnonzero(section >= 0)
-        column = np.full(len(trace), -1)
-        first = inside[begun[inside] == begun[trace.mode.sections.enter[section[inside]]]]
-        column[first] = section[first]
-        return column
+        number: Rows = np.cumsum(trace.compensation.starts_up | trace.mode.enters) - trace.compensation.starts_up
+        return np.where(trace.mode.whole_section >= 0, number, -1)
 
     # ---- start-up and offset cancel ----
 

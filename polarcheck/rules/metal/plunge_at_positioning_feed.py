@@ -17,10 +17,11 @@ if TYPE_CHECKING:
     worse=("feed",),
     gouges=True,
     once="feed",
-    subject="size",
+    subject="stock",
     follows={
-        "section": (*OUT_OF_PLACE, "cut-in-air", "approach-inside-stock"),
+        "section": OUT_OF_PLACE,
         "block": ("uncompensated-cut-into-part",),
+        "start-up ahead": ("start-up-sweeps-contour",),
     },
 )
 def plunge_at_positioning_feed(strokes: Strokes) -> Hits:

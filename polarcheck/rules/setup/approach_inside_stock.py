@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     at=("on",),
     subject="reach",
     follows={"section": ("nearly-regular-contour",)},
-    doubts=(("compensation", "first start-up"), ("move", "X before"), ("metal", "block"), ("rapid", "tool call")),
+    doubts=(("compensation", "start-up ahead"), ("move", "X before"), ("metal", "block"), ("rapid", "tool call")),
     is_symptom=True,
 )
 def approach_inside_stock(approaches: Approaches) -> Hits:
