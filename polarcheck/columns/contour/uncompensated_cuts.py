@@ -110,10 +110,22 @@ class UncompensatedCuts(Columns, frozen=True):
         return CutsOfRows.of(cuts, bare.curves, walls), tangled
 
     @property
+    def _is_stroke(self) -> Mask:
+        """Lines to and fro, at feed, behind a move of Z down: a slot that is as wide as the tool."""
+        trace, path = self.trace, self.trace.path
+        rows = np.flatnonzero(trace.mode.in_polar & path.moves)
+        plunge, out, back = rows[:-2], rows[1:-1], rows[2:]
+        goes_down = path.moves_z & ~path.travels & (path.z < path.z_before - ROUNDING)
+        is_line = (trace.axes.motion == Motion.LINE) & path.travels & ~path.moves_z
+        strokes = goes_down[plunge] & is_line[out] & is_line[back] & (np.diff(trace.mode.section[rows])[1:] == 0)
+        strokes &= np.abs(path.end[back] - path.start[out]) <= ROUNDING
+        return trace.blocks.mask_of([*out[strokes], *back[strokes]])
+
+    @property
     def _on_plane(self) -> tuple[Rows, Points, Points, Points, Floats, Rows]:
         """Moves on the plane: row, start, end, center, the highest Z, section."""
         moves = self.tool_center.moves
-        moves = moves[(moves.phase == Phase.CANCELLED) & self._has_contour[moves.row]]
+        moves = moves[(moves.phase == Phase.CANCELLED) & self._has_contour[moves.row] & ~self._is_stroke[moves.row]]
         z = np.maximum(self.trace.path.z, before(self.trace.path.z, self.trace.blocks.starts, np.nan))[moves.row]
         return moves.row, moves.start, moves.end, moves.center, z, moves.section
 

@@ -32,7 +32,8 @@ def uncompensated_cut_into_part(uncompensated_cuts: UncompensatedCuts) -> Hits:
     A contour is milled with G41 or G42, and a move with G40 in the same section leads through what it leaves, or nearer
     to it than R: on the way to the next contour, back to the start, or out after G13.1. It counts at the Z of the
     contour and deeper; above that it is a slot or a facing pass. In rapid traverse it is an error. At feed it is a
-    warning, since a slot may be milled without compensation on purpose: mill it in a section of its own, or allow it.
+    warning, since a slot may be milled without compensation on purpose: mill it in a section of its own, or allow it. A
+    line to and fro behind a move of Z down is such a slot.
 
     Source: builder's guide to G12.1 (approach and retract outside the part); FANUC B-63664EN, p. 170 (what the path
     of the tool center is without compensation).
@@ -90,6 +91,10 @@ def uncompensated_cut_into_part(uncompensated_cuts: UncompensatedCuts) -> Hits:
         G40 X80. C5.
         Z2. F1000
         X-80.
+        Z-3. F300
+        X-20. F100
+        X-80.
+        Z2. F1000
         G13.1
     """
     cuts = uncompensated_cuts.depth > 0
