@@ -10,14 +10,19 @@ from polarcheck.program.machines import toml_text
 #: `(at line 3, column 5)`, as tomllib ends a message.
 _AT_LINE = re.compile(r" \(at line (\d+), column (\d+)\)")
 _BLANK = re.compile(r"(?:[ \t\r\n]|#[^\n]*+)*+")
-_BARE = re.compile(r"[A-Za-z0-9_-]++")
-_BASIC = re.compile(r'"((?:[^"\\\n]|\\.)*+)"')
-_LITERAL = re.compile(r"'([^'\n]*+)'")
+_PART = r"""(?:"((?:[^"\\\n]|\\.)*+)"|'([^'\n]*+)'|([A-Za-z0-9_-]++))"""
+_PARTS = re.compile(_PART)
+_KEY = re.compile(rf"{_PART}(?:[ \t]*+\.[ \t]*+{_PART})*+[ \t]*+")
 # In a text of several lines one or two quotes may stand before the three that end it.
-_LONG = re.compile(r'"""(?:[^\\"]|\\.|"(?!""))*+"{3,5}' + r"|'''(?:[^']|'(?!''))*+'{3,5}", re.DOTALL)
+_VALUE = re.compile(
+    r'"""(?:[^\\"]|\\[\s\S]|"(?!""))*+"{3,5}'
+    r"|'''(?:[^']|'(?!''))*+'{3,5}"
+    r'|"(?:[^"\\\n]|\\.)*+"'
+    r"|'[^'\n]*+'"
+    r"|[^\s,\[\]{}#\"'][^,\n\]}#]*+"
+)
 #: Parts of a key, those of the tables around it included: more are refused (toml_text), and cost their square here.
 _MOST_PARTS = 30
-_SCALAR = re.compile(r"[^\s,\[\]{}#\"'][^,\n\]}#]*+")
 
 
 class _UnclearError(Exception):
@@ -149,41 +154,25 @@ class _Scanner:
         return path
 
     def _key(self, end: str = "=") -> tuple[str, ...]:
-        parts = []
-        while True:
-            self._skip()
-            parts.append(self._part())
-            if len(parts) > _MOST_PARTS:
-                raise _UnclearError
-            self._skip()
-            self.at += 1
-            if self.text[self.at - 1] == end:
-                return tuple(parts)
-            if self.text[self.at - 1] != ".":
-                raise _UnclearError
-
-    def _part(self) -> str:
-        quoted = _BASIC.match(self.text, self.at) or _LITERAL.match(self.text, self.at)
-        match = quoted or _BARE.match(self.text, self.at)
-        if match is None or (quoted and quoted[0][0] == '"' and "\\" in quoted[1]):
+        self._skip()
+        match = _KEY.match(self.text, self.at)
+        parts = _PARTS.findall(match[0]) if match else []
+        if match is None or len(parts) > _MOST_PARTS or any("\\" in basic for basic, _, _ in parts):
             raise _UnclearError
-        self.at = match.end()
-        return match[1] if quoted else match[0]
+        self.at = match.end() + 1
+        if self.text[self.at - 1] != end:
+            raise _UnclearError
+        return tuple(map("".join, parts))
 
     def _value(self, key: tuple[str, ...]) -> Iterator[tuple[int, tuple[str, ...]]]:
         """Go behind a value; the keys of the tables in it."""
         self._skip()
-        mark = self.text[self.at]
-        if mark == "{":
-            yield from self._elements("}", key)
-        elif mark == "[":
-            yield from self._elements("]", key)
-        else:
-            patterns = (_LONG, _BASIC, _LITERAL, _SCALAR)
-            match = next(filter(None, (pattern.match(self.text, self.at) for pattern in patterns)), None)
-            if match is None:
-                raise _UnclearError
+        if end := {"{": "}", "[": "]"}.get(self.text[self.at]):
+            yield from self._elements(end, key)
+        elif match := _VALUE.match(self.text, self.at):
             self.at = match.end()
+        else:
+            raise _UnclearError
 
     def _elements(self, end: str, key: tuple[str, ...]) -> Iterator[tuple[int, tuple[str, ...]]]:
         self.at += 1
