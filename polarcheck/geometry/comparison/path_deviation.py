@@ -26,6 +26,8 @@ from polarcheck.geometry.plane_path import SpacePath
 
 #: Grids by which corners are paired, as a multiple of the tolerance, the finest first.
 _CELLS = (2.0, 16.0, 128.0, 1024.0)
+#: A grid is too coarse where its width is that many times the best bound.
+_COARSER = 4
 #: Chords leave their arcs by this share of the tolerance; results are exact up to it.
 _SHARE = 0.02
 #: The same as a share of a large deviation.
@@ -124,12 +126,15 @@ def _best_pieces(old: Polyline, new: Polyline, tolerance: float) -> _Pieces:
     """The pieces with the least bound: corners paired one by one, where both have as many, or by where they lie."""
     corners = [np.flatnonzero(line.ends_move) for line in (old, new)]
     best = _pieces(old, new, corners[0], corners[1]) if len(corners[0]) == len(corners[1]) else None
+    width = tolerance
     for cell in _CELLS:
-        if best is not None and best.largest <= tolerance:
+        # A much coarser grid pairs corners that lie farther apart than those paired already.
+        if best is not None and best.largest <= max(tolerance, width / _COARSER):
             break
         keep_time()
+        width = tolerance * cell
         places = [(line.point[corner], line.z[corner]) for line, corner in zip((old, new), corners, strict=True)]
-        paired = anchors(places[0], places[1], tolerance * cell)
+        paired = anchors(places[0], places[1], width)
         by_place = _pieces(old, new, corners[0][paired[0]], corners[1][paired[1]])
         best = by_place if best is None or by_place.largest < best.largest else best
     assert best is not None
