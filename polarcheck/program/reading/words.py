@@ -137,6 +137,11 @@ class Text(msgspec.Struct, frozen=True):
         """Return the characters of an element of one of its tables."""
         return self.source.excerpt(int(table.start[index]), int(table.end[index]))
 
+    def written_blocks(self) -> list[str]:
+        """Return the characters of each block: quicker than one by one."""
+        text = self.source.text
+        return [text[start:end] for start, end in side_by_side(self.blocks.start, self.blocks.end)]
+
     def without_comments(self, block: int, further: Sequence[tuple[int, int]] = ()) -> str:
         """Return a block with blanks in the places of its comments, and of further spans of the file."""
         offset, rows = int(self.blocks.start[block]), slice(*stretch(self.comments.block, block, block + 1))

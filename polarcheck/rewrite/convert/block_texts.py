@@ -24,7 +24,7 @@ class BlockTexts:
 
     def __init__(self, trace: Trace) -> None:
         self.trace, self.text = trace, trace.text
-        self._contents: dict[int, str] = {}
+        self._written, self._contents = self.text.written_blocks(), dict[int, str]()
         self.with_comment = set(self.text.comments.block.tolist())
         words = self.text.words
         self.with_program_number = set(words.block[begins_program(words)].tolist())
@@ -63,7 +63,7 @@ class BlockTexts:
         """The words of a block as they are written, without N, block skip and comments."""
         if block not in self._contents:
             is_bare = block not in self.with_comment
-            written = self.text.written(self.text.blocks, block) if is_bare else self.text.without_comments(block)
+            written = self._written[block] if is_bare else self.text.without_comments(block)
             self._contents[block] = _behind_head(written)
         return self._contents[block]
 
@@ -86,10 +86,9 @@ class BlockTexts:
 
     def ends(self) -> tuple[int, int]:
         """The first and the last block that is not empty."""
-        blocks = self.text.blocks
-        number = range(len(blocks))
+        number = range(len(self._written))
         first, last = (
-            next((block for block in order if self.text.written(blocks, block).strip()), order[0])
+            next((block for block in order if self._written[block].strip()), order[0])
             for order in (number, number[::-1])
         )
         return first, last

@@ -40,8 +40,8 @@ class ComputedBlocks:
 
     def has_computed_feed(self, row: int) -> bool:
         """F in force in a row is computed."""
-        offset = int(self.trace.feedrate.feed_word[row])
-        if offset < 0 or not self._has_macros:
+        offset = int(self.trace.feedrate.feed_word[row]) if self._has_macros else -1
+        if offset < 0:
             return False
         blocks = self.trace.text.blocks
         block = int(blocks.start.searchsorted(offset, side="right")) - 1

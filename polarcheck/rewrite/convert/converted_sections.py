@@ -7,6 +7,7 @@ from collections.abc import Collection, Sequence
 
 import numpy as np
 
+from polarcheck.foundation.arrays import side_by_side
 from polarcheck.foundation.states import STATES, Motion
 from polarcheck.program.machines.machine import Machine
 from polarcheck.rewrite.convert.axis_words import Translated
@@ -59,6 +60,13 @@ class _Writer:
         self.ends = SectionEnds(original, target, measures, self.texts, new)
         self.is_same = self.words.is_same
         self.has_axes = self.trace.blocks.has(*self.trace.machine.axis_words)
+        path = self.trace.path
+        #: Of each row what it moves: axes of the plane, Z, its motion, and the end and center of its path.
+        self.moves = list(
+            side_by_side(path.travels, path.moves_z, path.z, self.trace.axes.motion, path.end, path.is_arc, path.center)
+        )
+        self.blocks: list[int] = self.trace.run.block.tolist()
+        self.lines: list[int] = self.trace.blocks.line_in_file.tolist()
         self.rapid_rows: set[int] = set()
         self.divided_rows: set[int] = set()
 
@@ -94,11 +102,11 @@ class _Writer:
             self._put(row, [])
         targets = self._targets(rows)
         for row in rows:
-            pen.numbers.line = self.trace.line(row)
-            if int(self.trace.run.block[row]) in targets:
+            pen.numbers.line = self.lines[row]
+            if self.blocks[row] in targets:
                 pen.forget()
             self._put(row, self._row(row, enter, leave, pen, turn))
-        block = int(self.trace.run.block[leave])
+        block = self.blocks[leave]
         self.new.blocks[block] = [*self.new.blocks[block], *ends.feed_behind(leave, pen)]
 
     def _with_words(self, enter: int, leave: int) -> list[int]:
@@ -106,7 +114,7 @@ class _Writer:
         first, until = np.searchsorted(self.trace.run.row, (enter, leave + 1))
         rows: list[int] = np.unique(self.trace.run.row[first:until]).tolist()
         # The head of a subprogram is written with those of all programs.
-        return [row for row in rows if int(self.trace.run.block[row]) not in self.texts.with_program_number]
+        return [row for row in rows if self.blocks[row] not in self.texts.with_program_number]
 
     def _targets(self, rows: Sequence[int]) -> set[int]:
         """
@@ -149,7 +157,7 @@ class _Writer:
 
         Raises RefusedError for a block that moves the tool and can only be decided whole.
         """
-        content = self.texts.content(int(self.trace.run.block[row]))
+        content = self.texts.content(self.blocks[row])
         if translated.whole and (self.has_axes[row] or self.trace.axes.moves[row]):
             text = f"{content}: {translated.whole}, and the contour in the mode cannot go on without it"
             raise refused_at(self.trace, row, text)
@@ -157,22 +165,20 @@ class _Writer:
 
     def _moves(self, row: int, pen: Pen, turn: complex, codes: Sequence[str]) -> list[NewBlock]:
         """The moves of a row; none where nothing moves."""
-        trace, path = self.trace, self.trace.path
-        travels, moves_z = bool(path.travels[row]), bool(path.moves_z[row])
+        travels, moves_z, depth, motion, point, is_arc, center = self.moves[row]
         if not travels and not moves_z:
             return []
-        z = float(path.z[row]) if moves_z else None
+        z = depth if moves_z else None
         if z is not None and math.isnan(z):
             raise refused_at(self.trace, row, "Z is a distance from a place that is not known")
-        end = complex(path.end[row]) * turn if travels else None
-        motion = int(trace.axes.motion[row])
+        end = point * turn if travels else None
         if motion == _RAPID:
             self.rapid_rows.add(row)
             return pen.rapid(end, z, codes)
         feed = None if self.computed.has_computed_feed(row) else self.feeds.of_row(row)
-        if end is None or not bool(path.is_arc[row]):
+        if end is None or not is_arc:
             return pen.line(end, z, feed, codes)
-        blocks = pen.arc(end, complex(path.center[row]) * turn, motion == _CCW, z, feed, codes)
+        blocks = pen.arc(end, center * turn, motion == _CCW, z, feed, codes)
         if len(blocks) > 1:
             self.divided_rows.add(row)
         return blocks
@@ -196,7 +202,7 @@ class _Writer:
 
     def _call(self, row: int) -> list[str] | None:
         """The words of a block that calls a subprogram or returns from it; None for any other."""
-        return self.translation.calls.words_of_row(row, self.texts.content(int(self.trace.run.block[row])))
+        return self.translation.calls.words_of_row(row, self.texts.content(self.blocks[row]))
 
     def _translated(self, row: int, words: Sequence[int]) -> Translated:
         """The words of a row beside its geometry; none of them where the whole block is to be decided."""
@@ -234,7 +240,7 @@ class _Writer:
     # ---- blocks ----
 
     def _put(self, row: int, written: list[NewBlock] | None) -> None:
-        block = int(self.trace.run.block[row])
+        block = self.blocks[row]
         self.new.taken.add(block)
         if written is not None and self.new.blocks.setdefault(block, written) != written:
             text = "the block runs several times, and would be another one each time"
@@ -243,7 +249,7 @@ class _Writer:
     def _is_unchanged(self, block: int, new: Sequence[NewBlock]) -> bool:
         if len(new) != 1 or new[0].comment:
             return False
-        return self.style.blank.join(new[0].words) == self.style.blank.join(self.texts.content(block).split())
+        return self.style.blank.join(new[0].words) == self.texts.content(block).replace(" ", self.style.blank)
 
     def _require_inside(self) -> None:
         """Raise RefusedError for blocks that are rewritten in sections and run outside of them, too."""

@@ -21,26 +21,20 @@ class OfLathe:
     def __init__(self, trace: Trace, target: Machine, measures: Measures) -> None:
         self.trace, self.target, self.measures = trace, target, measures
         blocks = trace.blocks
-        self._has_axes = blocks.has(*trace.machine.axis_words)
+        has_axes = blocks.has(*trace.machine.axis_words)
         returns = trace.machine.codes("reference_return")
         self._returns = blocks.codes(*returns[:1])
         of_c_alone = blocks.listed("c_axis_reference") & ~blocks.has(*"XYZUVW")
-        self._returns_further = blocks.codes(*returns[1:]) & ~of_c_alone
-        self._lists = {key: blocks.listed(key) for key in ("machine_coordinates", "data_input", "coordinate_setting")}
-
-    def why_not(self, row: int) -> str:
-        """Return why the whole block of a row is to be decided; empty where it need not be."""
-        has_axes = bool(self._has_axes[row])
-        title = self.target.title
-        if self._lists["machine_coordinates"][row] and has_axes:
-            return f"a position in the coordinates of the machine: choose that of {title}"
-        if self._returns_further[row]:
-            return f"a reference point that its builder or user has set: choose that of {title}"
-        if self._lists["data_input"][row]:
-            return f"it sets values that the control keeps, such as offsets: give those of {title}"
-        if self._lists["coordinate_setting"][row] and has_axes:
-            return f"it sets the origin by where the tool stands: set that of {title}"
-        return ""
+        self._sets_origin, title = blocks.listed("coordinate_setting"), target.title
+        at_machine, sets_values = blocks.listed("machine_coordinates"), blocks.listed("data_input")
+        own_point = blocks.codes(*returns[1:]) & ~of_c_alone
+        #: Why the whole block of a row is to be decided, by the rows.
+        self.reasons = [
+            (at_machine & has_axes, f"a position in the coordinates of the machine: choose that of {title}"),
+            (own_point, f"a reference point that its builder or user has set: choose that of {title}"),
+            (sets_values, f"it sets values that the control keeps, such as offsets: give those of {title}"),
+            (self._sets_origin & has_axes, f"it sets the origin by where the tool stands: set that of {title}"),
+        ]
 
     def remarks(self, row: int, axes: Sequence[AxisWord]) -> list[str]:
         """Return what is to be decided of a row whose words stay. axes: its axis words."""
@@ -49,7 +43,7 @@ class OfLathe:
         if self._returns[row] and any(not self._is_zero_step(word) for word in axes):
             words = " ".join(self.measures.written(word.index) for word in axes)
             result.append(f"{words}: see that the tool goes free from there to the reference point of {title}")
-        if self._lists["coordinate_setting"][row] and self.trace.blocks.has("S")[row]:
+        if self._sets_origin[row] and self.trace.blocks.has("S")[row]:
             result.append(f"S{self.trace.blocks.word('S')[row]:g}: give the limit of the spindle speed of {title}")
         result += [f"{code}: set this work offset on {title}" for code in self._first_offsets.get(row, ())]
         if row in self._rotary_feeds:

@@ -16,6 +16,9 @@ from polarcheck.rewrite.convert.doubtful_values import Basis
 from polarcheck.rewrite.writing.original import Original
 from polarcheck.rewrite.writing.outcome import Refusal, refusal_at
 
+#: Shares of F that differ by less, by the larger one, are the same.
+_SAME_SHARE = 1e-9
+
 
 class SectionFeeds:
     """
@@ -28,33 +31,29 @@ class SectionFeeds:
     """
 
     def __init__(self, trace: Trace, moves: Moves, target: Machine, basis: Basis) -> None:
-        self.trace, self.target, self._basis = trace, target, basis
-        self._share = np.ones(len(trace))
+        self._basis = basis
+        share, length = np.ones(len(trace)), np.zeros(len(trace))
         of_contour = ~moves.corner & ~np.isnan(moves.plane_share)
-        self._share[moves.row[of_contour]] = moves.plane_share[of_contour]
-        self._length = np.zeros(len(trace))
-        np.add.at(self._length, moves.row, np.nan_to_num(moves.length))
+        share[moves.row[of_contour]] = moves.plane_share[of_contour]
+        np.add.at(length, moves.row, np.nan_to_num(moves.length))
+        # The share of F with which the tool center will run on the plane.
+        target_share, path = np.ones(len(trace)), trace.path
+        if target.polar.feed_measures == "space":
+            rises = np.flatnonzero(path.moves_z & (length > 0) & ~np.isnan(path.z - path.z_before))
+            target_share[rises] = length[rises] / np.hypot(length, path.z - path.z_before)[rises]
+        feedrate = trace.feedrate
+        is_per_minute = feedrate.feed_mode == FeedMode.PER_MINUTE
+        feed = np.where(is_per_minute, feedrate.programmed_feed, feedrate.feed_number)
+        differs = (np.abs(share - target_share) > _SAME_SHARE * np.maximum(share, target_share)) & ~np.isnan(feed)
+        self._differs = set(np.flatnonzero(differs).tolist())
+        self._feed: list[float] = np.where(differs, feed * share / target_share, feed).tolist()
 
     def of_row(self, row: int) -> float | None:
         """F of a row [mm/min, or mm per revolution]; None where none is in force."""
-        feedrate = self.trace.feedrate
-        is_per_minute = int(feedrate.feed_mode[row]) == FeedMode.PER_MINUTE
-        feed = float(feedrate.programmed_feed[row] if is_per_minute else feedrate.feed_number[row])
-        if math.isnan(feed):
-            return None
-        ours, theirs = float(self._share[row]), self._target_share(row)
-        if math.isclose(ours, theirs, rel_tol=1e-9):
-            return feed
-        self._basis.add("polar.feed_measures", row)
-        return feed * ours / theirs
-
-    def _target_share(self, row: int) -> float:
-        """The share of F with which the tool center will run on the plane."""
-        path, length = self.trace.path, float(self._length[row])
-        if self.target.polar.feed_measures != "space" or not bool(path.moves_z[row]) or not length:
-            return 1.0
-        rise = abs(float(path.z[row]) - float(path.z_before[row]))
-        return length / math.hypot(length, rise) if rise == rise else 1.0
+        feed = self._feed[row]
+        if row in self._differs:
+            self._basis.add("polar.feed_measures", row)
+        return None if math.isnan(feed) else feed
 
 
 def refusals(original: Original, is_same: bool) -> list[Refusal]:

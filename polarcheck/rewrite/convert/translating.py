@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from fractions import Fraction
+from functools import cached_property
+
+import numpy as np
 
 from polarcheck.checking.settings import Settings
 from polarcheck.foundation.states import NO_MOVE, FeedMode
@@ -49,7 +52,6 @@ class Translation:
         #: Lines in which a speed is written that the original does not have there.
         self.added_speeds: set[int] = set()
         self._of_lathe = OfLathe(self.trace, self.target, self.measures)
-        self._unknown_moves = self.measures.unknown_moves
         self._moves = self.trace.modal.uses_axes & self.trace.blocks.has(*self.source.axis_words)
         self._speeds = SpeedWords(*of_program)
         self._cycles = CycleWords(self.trace, self.target, self.measures, self._codes.g)
@@ -84,14 +86,22 @@ class Translation:
 
     def why_not(self, row: int) -> str:
         """Return why no words of a row can stand on the other machine, whatever they are; empty where some can."""
-        index = int(self._unknown_moves.word[row])
+        return self._reasons.get(row, "")
+
+    @cached_property
+    def _reasons(self) -> dict[int, str]:
+        """The rows of which no words can stand on the other machine -> why; the first reason of each counts."""
         if self.is_same_lathe:
-            return ""
-        if index < 0 and self.calls.calls_foreign_macro[row]:
-            return f"the macro is not in the file: see whether {self.target.title} has it, and convert it, too"
-        if index < 0:
-            return self._of_lathe.why_not(row)
-        return f"{self.measures.written(index)}: the profile of {self.source.title} does not say what it does"
+            return {}
+        foreign = f"the macro is not in the file: see whether {self.target.title} has it, and convert it, too"
+        reasons: dict[int, str] = {}
+        for mask, text in (*reversed(self._of_lathe.reasons), (self.calls.calls_foreign_macro, foreign)):
+            reasons |= dict.fromkeys(np.flatnonzero(mask).tolist(), text)
+        unknown = self.measures.unknown_moves.word
+        for row in np.flatnonzero(unknown >= 0).tolist():
+            word = self.measures.written(unknown[row])
+            reasons[row] = f"{word}: the profile of {self.source.title} does not say what it does"
+        return reasons
 
     # ---- blocks of one meaning ----
 

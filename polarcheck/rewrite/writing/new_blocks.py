@@ -96,9 +96,19 @@ def edits_of(
     """
     text = original.trace.text
     sequence = _Sequence(text, style)
-    with_more = {*text.comments.block.tolist(), *text.labels.block.tolist()}
+    written, with_more = text.written_blocks(), {*text.comments.block.tolist(), *text.labels.block.tolist()}
     return [
-        _edit(text, index, blocks[index], sequence, style, machine, index in without_skip, index in with_more)
+        _edit(
+            text,
+            index,
+            written[index],
+            blocks[index],
+            sequence,
+            style,
+            machine,
+            index in without_skip,
+            index in with_more,
+        )
         for index in sorted(blocks)
     ]
 
@@ -257,6 +267,7 @@ def jump_numbers(text: Text) -> set[int]:
 def _edit(
     text: Text,
     index: int,
+    content: str,
     blocks: Sequence[NewBlock],
     sequence: _Sequence,
     style: Style,
@@ -264,29 +275,29 @@ def _edit(
     is_without_skip: bool,
     has_more: bool,
 ) -> Replace:
-    """has_more: the block has comments or labels."""
+    """content: the characters of the block. has_more: it has comments or labels."""
     start = int(text.blocks.start[index])
-    content = text.written(text.blocks, index)
     begin, finish = without_blanks(content, start)
-    lead = begin - start
-    head = _HEAD.match(text.without_comments(index) if has_more else content, lead)
-    labels = range(*stretch(text.labels.block, index, index + 1)) if has_more else range(0)
-    head_end = max((int(text.labels.end[label]) - start for label in labels), default=0)
-    head_end = max(head.end() if head else lead, head_end)
+    lead, plain, comments, labels = begin - start, content, list[str](), list[int]()
+    if has_more:
+        plain, comments = text.without_comments(index), comments_of(text, index)
+        labels = text.labels.end[slice(*stretch(text.labels.block, index, index + 1))].tolist()
+    head = _HEAD.match(plain, lead)
+    head_end = max([head.end() if head else lead, *(end - start for end in labels)])
     kept = content[lead:head_end].strip()
     if is_without_skip:
         kept = _SKIP.sub("", kept).strip()
-    number = _NUMBER.search(kept)
     written = [block_text(block, style, machine) for block in blocks]
-    comments = comments_of(text, index) if has_more else ()
     remarks = "".join(f" {comment_text(comment, machine)}" for comment in comments)
-    if not written and not remarks and not (number and int(number[1]) in sequence.references) and not len(labels):
-        return line_without(text.source, begin, finish)
-    skip = _SKIP.search(kept)
-    numbers = sequence.between(index, len(written) - 1)
-    heads = [kept, *(style.blank.join(part for part in (skip[0] if skip else "", n) if part) for n in numbers)]
-    lines = [_joined(head, line, style) for head, line in zip(heads, written or [""], strict=True)]
-    lines[0] = (lines[0] + remarks).strip()
+    if not written and not remarks and not labels:
+        number = _NUMBER.search(kept)
+        if not number or int(number[1]) not in sequence.references:
+            return line_without(text.source, begin, finish)
+    lines = [(_joined(kept, written[0] if written else "", style) + remarks).strip()]
+    if len(written) > 1:
+        skip = _SKIP.search(kept)
+        for n_word, line in zip(sequence.between(index, len(written) - 1), written[1:], strict=True):
+            lines.append(_joined(_joined(skip[0] if skip else "", n_word, style), line, style))
     return begin, finish, _parting(text, index, machine).join(lines) if len(lines) > 1 else lines[0]
 
 

@@ -203,12 +203,9 @@ class Pen:
 
     def _axes(self, counts: tuple[int, int], everything: bool) -> list[str]:
         """The words of the linear and of the virtual axis; those that do not change are left out."""
-        words = []
-        for index, (name, count) in enumerate(zip((self.linear, self.virtual), counts, strict=True)):
-            if everything or count != self._written[index]:
-                words.append(self.numbers.word(name, count))
-            self._written[index] = count
-        return words
+        before, self._written[:2] = self._written[:2], counts
+        names = (self.linear, self.virtual)
+        return [self.numbers.word(names[n], counts[n]) for n in (0, 1) if everything or counts[n] != before[n]]
 
     def _depth(self, z: float) -> list[str]:
         count = self.numbers.increments(z)

@@ -106,7 +106,11 @@ def _deviation(arc: Arc, start: complex, end: complex, center: complex, step: fl
     sweep = swept(start, end, center, arc.sweep > 0)
     if abs(sweep - arc.sweep) * arc.radius > _ALONG * step:
         return math.inf
-    growth = abs(end - center) - abs(start - center)
-    written = Arc(start, center, sweep, growth)
-    intended = ((share, arc.radius + arc.growth * share) for share in (0.25, 0.5, 0.75))
-    return max(abs(abs(written.at(share) - arc.center) - radius) for share, radius in intended)
+    spoke, radius = start - center, arc.radius
+    length = abs(spoke)
+    growth = abs(end - center) - length
+    points = (
+        (share, center + spoke * (1 + growth * share / length) * cmath.exp(1j * sweep * share))
+        for share in (0.25, 0.5, 0.75)
+    )
+    return max(abs(abs(point - arc.center) - (radius + arc.growth * share)) for share, point in points)

@@ -32,14 +32,12 @@ class Numbers:
         self.feed_point = style.feed_point or machine.writing.feed_point
         self.line = 0
         control = machine.control
-        self.scale = MM_PER_INCH if inch else 1.0
         self.least = control.least_increment_inch if inch else control.least_increment
+        #: The least increment of a length [mm].
+        self.step = self.least * (MM_PER_INCH if inch else 1.0)
         self._decimals = _decimals(self.least)
-
-    @property
-    def step(self) -> float:
-        """The least increment of a length [mm]."""
-        return self.least * self.scale
+        #: The words that were written, by address and least increments: passes of a contour repeat them at each depth.
+        self._words: dict[tuple[str, int], str] = {}
 
     def increments(self, length: float) -> int:
         """The least increments of a length [mm], rounded; lengths are the same where these are."""
@@ -58,8 +56,11 @@ class Numbers:
 
     def word(self, address: str, count: int) -> str:
         """A word of least increments; with = where its address is a name or ends with a digit, as C2=10."""
-        sign = "=" if len(address) > 1 and not address.endswith("=") else ""
-        return address + sign + self.of_increments(count)
+        key = address, count
+        if key not in self._words:
+            sign = "=" if len(address) > 1 and not address.endswith("=") else ""
+            self._words[key] = address + sign + self.of_increments(count)
+        return self._words[key]
 
     def angle(self, degrees: float) -> str:
         """An angle [deg] as it is written."""
