@@ -72,6 +72,47 @@ def test_a_lens_about_the_center_is_sound() -> None:
     assert said(report_of(program(contour), "fanuc-30i", "1:radius=2")) == []
 
 
+def test_an_eccentric_circle_in_distances_is_sound() -> None:
+    arcs = ["G1 X49. F120", "G2 U-41. H-20.5 R20.5", "U-41. H20.5 R20.5", "U41. H20.5 R20.5", "U41. H-20.5 R20.5"]
+    text = program([*arcs, "G1 X63."]).replace("G40 X60. F1500\n", "")
+    assert said(report_of(text, "fanuc-30i", "1:radius=5")) == []
+
+
+#: A square with leads that are arcs; the same with centers.
+LED = [
+    *("G42 X52. C-6. F200", "G2 X40. C0 R6.", "G1 C20.", "X-40.", "C-20.", "X40."),
+    *("C0", "G2 X52. C6. R6.", "G1"),
+]
+LED_CENTERED = [line.replace("C0 R6.", "C0 I0 J6.").replace("C6. R6.", "C6. I6. J0") for line in LED]
+
+
+def in_inch(text: str) -> str:
+    """A program of millimeters in inch."""
+    text = re.sub(r"([XZCRIJF])(-?[\d.]+)", lambda word: f"{word[1]}{float(word[2]) / 25.4:.4f}", text)
+    return text.replace("G98", "G20 G98")
+
+
+@looped(
+    ("contour", "old", "new", "needed"),
+    [
+        (LED, "C6. R6.", "C6. R9.", "R6."),
+        (LED, "C0 R6.", "C0 R7.5", "R6."),
+        (mirrored(LED), "C-6. R6.", "C-6. R9.", "R6."),
+        (LED_CENTERED, "I6. J0", "I7.5 J-1.5", "I6. J0."),
+    ],
+)
+def test_a_lead_that_is_not_tangent_has_the_radius_of_the_other(
+    contour: list[str], old: str, new: str, needed: str
+) -> None:
+    sound = program(contour)
+    wrong = sound.replace(old, new)
+    assert said(report_of(sound, "fanuc-30i", "1:radius=3")) == []
+    findings = report_of(wrong, "fanuc-30i", "1:radius=3").findings
+    assert [(finding.rule, finding.values["word_needed"]) for finding in findings] == [("arc-not-tangent", needed)]
+    assert said(report_of(in_inch(sound), "fanuc-30i", "1:radius=0.12")) == []
+    assert [rule for _, rule in said(report_of(in_inch(wrong), "fanuc-30i", "1:radius=0.12"))] == ["arc-not-tangent"]
+
+
 def as_it_is(lines: list[str]) -> list[str]:
     return lines
 

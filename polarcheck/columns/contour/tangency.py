@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from polarcheck.columns.contour.passes import Passes
+from polarcheck.columns.contour.passes import LEADS, Passes
 from polarcheck.columns.contour.same_circle import IntendedArcs, SameCircle
 from polarcheck.columns.path.arcs import Arcs
 from polarcheck.columns.trace import Trace
@@ -228,6 +228,34 @@ class Tangency(Columns, frozen=True):
         whole = needed / self.trace.lengths.scale[row] / step
         return bool(len(chosen) > 2 and np.ptp(had) <= near and (np.abs(whole - np.rint(whole)) <= near / step).all())
 
+    @cached_property
+    def _leads(self) -> IntendedArcs:
+        """Leads with a corner at the contour, of which the R of a lead that is tangent to it would make no corner."""
+        passes, arcs = self.passes, self.arcs
+        has_leads = passes.compensated & passes.closed & (passes.last - passes.first >= LEADS)
+        first, last = (ends[has_leads] for ends in (passes.first, passes.last))
+        move, wall = np.append(first, last), np.append(first + 1, last - 1)
+        is_circle = passes.is_arc & ~(arcs.is_no_circle | arcs.ends_at_start)[passes.row] & ~np.isnan(passes.center)
+        chosen = is_circle[move] & ~passes.in_ring[move] & (passes.tangents[0][wall] != 0)
+        move, wall, is_out = move[chosen], wall[chosen], wall[chosen] < move[chosen]
+        chord, digit = passes.end[move] - passes.start[move], 2 * passes.half_of_last_digit[move]
+        corner = np.abs(np.where(is_out, passes.turns[0][move], passes.turns[1][move]))
+        along = np.where(is_out, passes.tangents[1][wall], passes.tangents[0][wall])
+        half = np.where(is_out, 1, -1) * angle_between(along, chord)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            slack = _SLACK + digit * (1 / np.abs(chord) + 1 / self.trace.path.length[passes.row[wall]])
+            radius = np.abs(chord) / 2 / np.sin(np.abs(half))
+            near = digit / np.sin(np.abs(half)) + radius * slack / np.tan(np.abs(half)) + 1e-3
+        is_tangent = corner <= slack + digit / np.abs(self._written[move])
+        fits = (corner > np.maximum(_CORNER, _CLEARLY * slack)) & (np.abs(half) > _FLAT) & (np.abs(half) < np.pi / 2)
+        fits &= (half > 0) == (passes.motion[move] == Motion.CCW)
+        models = np.append(np.abs(self._written[move[is_tangent]]), np.inf)
+        model = models[np.abs(models - radius[:, None]).argmin(axis=1)]
+        fits &= np.abs(model - radius) <= near
+        radius = model
+        center = passes.start[move] + 1j * np.sign(half) * radius * chord / np.abs(chord) * np.exp(-1j * half)
+        return IntendedArcs(move[fits], radius[fits], center[fits], digit[fits])
+
     def _tolerance_of(self, index: int) -> float:
         """Uncertainty by rounding of the R that would be tangent [mm]."""
         candidates, passes = self._candidates, self.passes
@@ -258,7 +286,7 @@ class Tangency(Columns, frozen=True):
         candidates, chosen = self._candidates, self._misfits
         tolerance = np.array([self._tolerance_of(index) for index in chosen.tolist()])
         tangent = IntendedArcs(candidates.move[chosen], candidates.radius[chosen], candidates.center[chosen], tolerance)
-        parts = [self.same_circle.mistaken_together, self.same_circle.leaves_circle, tangent]
+        parts = [self.same_circle.mistaken_together, self.same_circle.leaves_circle, tangent, self._leads]
         parts = [part for part in parts if len(part.move)] or [tangent]
         if len(parts) == 1:
             return parts[0]
@@ -296,6 +324,11 @@ class Tangency(Columns, frozen=True):
         """Misfits that are meant on the circle of other arcs."""
         circle = self.same_circle
         return self._column(np.concatenate([circle.mistaken_together.move, circle.leaves_circle.move]))
+
+    @cached_property
+    def of_leads(self) -> Mask:
+        """Misfits that lead to or from a contour."""
+        return self._column(self._leads.move)
 
     @cached_property
     def corner(self) -> Floats:

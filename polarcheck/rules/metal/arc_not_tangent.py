@@ -31,7 +31,8 @@ def arc_not_tangent(tangency: Tangency, arcs: Arcs) -> Mask:
     An arc between two blocks rounds the corner between them if it is tangent to both. With another R, another center or
     the other sign of R it still ends where it should, and no control objects: the part has a corner at either end of
     the arc. It is reported where one word explains it: the other arcs of the contour are tangent, or all arcs have
-    twice the R that would be, and with the R that is named this one is tangent, too. Arcs about the center of C, as
+    twice the R that would be, and with the R that is named this one is tangent, too; so is an arc that leads to or from
+    the contour and would be tangent to it with the R of another lead that is. Arcs about the center of C, as
     those of a bar with flats, and contours whose corners are meant are not concerned.
 
     Source: FANUC B-62754EN/01, p. 67 (R of an arc).
@@ -62,6 +63,23 @@ def arc_not_tangent(tangency: Tangency, arcs: Arcs) -> Mask:
         G3 X12.5 C-7.806 R10.   (expect: arc-not-tangent)
         G1 X32. C0
         G40 X100.
+        G13.1
+
+    Bad, tool 1:radius=3:
+
+        T0101
+        G98 G0 X100. C0
+        G12.1
+        G1 X70. C-6. F200
+        G42 X52.
+        G2 X40. C0 R6.
+        G1 C20.
+        X-40.
+        C-20.
+        X40.
+        C0
+        G2 X52. C6. R9.     (expect: arc-not-tangent)
+        G1 G40 X70.
         G13.1
 
     Good, tool 1:radius=3:
@@ -100,16 +118,25 @@ def arc_not_tangent(tangency: Tangency, arcs: Arcs) -> Mask:
 def details(hit: Hit, arcs: Arcs, tangency: Tangency) -> Details:
     from polarcheck.rules.wording.arcs import written_arc
 
-    by_radius, on_circle = arcs.by_radius[hit.row], tangency.on_circle[hit.row]
+    by_radius = arcs.by_radius[hit.row]
     return {
         "corner": tangency.corner[hit.row],
         "arc_radius": arcs.radius[hit.row] if by_radius else None,
         "arc_radius_needed": abs(tangency.radius_needed[hit.row]) if by_radius else None,
         "word": written_arc(hit.trace, arcs, hit.row),
         "word_needed": _needed(hit, by_radius, tangency),
-        "fit": "lie on one circle with the other arcs" if on_circle else "be tangent to the blocks before and after it",
+        "fit": _fit(hit.row, tangency),
         "likewise": hit.likewise(tangency.alike(hit.row)) if by_radius else "",
     }
+
+
+def _fit(row: int, tangency: Tangency) -> str:
+    """What an arc would do with the words that are named."""
+    if tangency.on_circle[row]:
+        return "lie on one circle with the other arcs"
+    if tangency.of_leads[row]:
+        return "be tangent to the contour, as another lead is"
+    return "be tangent to the blocks before and after it"
 
 
 def _needed(hit: Hit, by_radius: bool, tangency: Tangency) -> str:
