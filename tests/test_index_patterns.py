@@ -66,7 +66,15 @@ def test_an_angle_at_which_nothing_is_cut_is_told(without: int) -> None:
     assert told(program(angles, without=without)) == [(f"G0 C{angles[without]}", "")]
 
 
+@pytest.mark.parametrize(("without", "comment"), [(0, "3 SLOTS"), (1, "SLOTS"), (2, "SLOTS")])
+def test_an_angle_of_three_at_which_nothing_is_cut_is_told(without: int, comment: str) -> None:
+    angles = ["0.", "120.", "240."]
+    assert told(program(angles, comment, without)) == [(f"G0 C{angles[without]}", "")]
+
+
 def test_an_angle_at_which_nothing_is_cut_may_be_the_way_home() -> None:
+    assert told(program(["0.", "120.", "240."], without=0)) == []
+    assert told(program(["0.", "90.", "180."], without=2)) == []
     angles = ["0.", "120.", "240.", "0."]
     assert told(program(angles, without=3)) == []
     assert told(program(["0.", "90.", "180.", "45."], without=3)) == []

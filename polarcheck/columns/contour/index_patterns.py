@@ -44,7 +44,9 @@ def off_the_division(trace: Trace) -> Iterator[Correction]:
         return
     for empty in np.flatnonzero(~has_section).tolist():
         all_angles = np.append(cut, np.mod(angle[empty], _TURN))
-        if len(all_angles) >= _SHOW and _is_even(all_angles):
+        # Of three angles the first one may be where C begins.
+        is_shown = len(all_angles) >= _SHOW or empty > 0 or _is_stated(trace, len(all_angles))
+        if is_shown and _is_even(all_angles):
             becomes = f"the {len(all_angles)} sections would divide the turn evenly"
             yield Correction(
                 int(row[empty]),

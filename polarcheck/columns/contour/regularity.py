@@ -27,8 +27,8 @@ _PLAIN_ORDER, _FEWEST_CORNERS = 2, 5
 _SMOOTH_BY_CHANCE = 0.25
 #: Places at which a tool goes down, and lines that a curve is written as.
 _FEWEST_PLACES, _FEWEST_OF_CURVE = 4, 12
-#: Sections that may be one contour at several angles of C.
-_FEWEST_SECTIONS, _MOST_SECTIONS = 3, 36
+#: Sections that may be one contour at several angles of C; nothing may be cut at one of them.
+_FEWEST_SECTIONS, _MOST_SECTIONS = 2, 36
 
 
 class XReading(msgspec.Struct, frozen=True):
