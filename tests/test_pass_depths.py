@@ -6,7 +6,7 @@ import math
 
 import pytest
 from cases import looped
-from programs import tables_of
+from programs import report_of, tables_of
 
 pytestmark = pytest.mark.ci
 
@@ -115,3 +115,38 @@ def test_one_contour_in_several_sections_has_one_depth(depths: list[str], expect
     off_by_line = lines_off(f"O1\nG98 T0101\n{sections}M30\n")
     size = sections.count("\n") // len(depths)
     assert {(line - 3) // size: z for line, z in off_by_line.items()} == expected
+
+
+#: A contour that is called at several depths; by machine what X is in diameters.
+_CALLED = ["G42 X{0} C0 F200", "C{2}", "X-{0}", "C-{2}", "X{0}", "C0", "G40 X{1}"]
+_LATHES = {"fanuc-30i": 1.0, "mitsubishi-m700": 0.5}
+
+
+def idle_depths(machine: str, depths: list[str], without: int) -> list[str]:
+    """The blocks that are told where the call of a contour is lost at one of these depths."""
+    share = _LATHES[machine]
+    contour = [line.format(f"{20 * share}", f"{60 * share}", "10.") for line in _CALLED]
+    calls = [line for at, z in enumerate(depths) for line in (f"Z{z} F300", *(["M98 P2"] if at != without else []))]
+    head = ["O1", "T0101", "G98 G97 S2500 M13", f"G0 X{60 * share} Z2. C0", "G12.1", f"G1 X{60 * share} C0 F900"]
+    lines = [*head, *calls, "Z2.", "G13.1", "M30", "O2", *contour, "M99"]
+    findings = report_of("\n".join(lines) + "\n", machine, "1:radius=4").findings
+    assert {finding.rule for finding in findings if finding.severity != "note"} <= {"nearly-regular-contour"}
+    return [lines[finding.line - 1] for finding in findings if finding.severity != "note"]
+
+
+@looped("machine", _LATHES)
+@looped(
+    ("depths", "without", "told"),
+    [
+        (["-2.", "-4.", "-6."], 9, []),
+        (["-2.", "-4.", "-6."], 1, ["Z-4. F300"]),
+        (["-2.", "-4.", "-6."], 2, ["Z-6. F300"]),
+        (["-1.5", "-3.", "-4.5", "-6."], 2, ["Z-4.5 F300"]),
+        # The first depth is one to which the tool may go fast; one between others may be on its way.
+        (["-2.", "-4.", "-6."], 0, []),
+        (["-2.", "-3.", "-6."], 1, []),
+        (["-2.", "-4."], 1, []),
+    ],
+)
+def test_a_depth_at_which_nothing_is_cut(machine: str, depths: list[str], without: int, told: list[str]) -> None:
+    assert idle_depths(machine, depths, without) == told

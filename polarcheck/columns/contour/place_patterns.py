@@ -1,4 +1,7 @@
-"""Pockets and holes of one section on a circle: the one whose place is off the regular polygon of all the others."""
+"""
+Where a tool goes down in a section: a pocket or hole that is off the regular polygon of all the others, and a depth at
+which nothing is cut.
+"""
 
 from __future__ import annotations
 
@@ -12,18 +15,40 @@ from polarcheck.columns.path.lengths import same_place
 from polarcheck.columns.trace import Trace
 from polarcheck.columns.words.slips import parts_of, plain_number, slip_of
 from polarcheck.foundation.arrays import Points, Rows, different, first_in_run
-from polarcheck.foundation.states import Side
+from polarcheck.foundation.states import Motion, Side
 from polarcheck.geometry.regularity.symmetric_corners import each_once, is_lonely, regular_polygons
 from polarcheck.geometry.tolerances import ROUNDING
 
 #: Places of a section that are compared; of the fewest a slip alone tells that no other design explains.
 _FEWEST, _MOST = 4, 36
+#: Even depths at one place, at the least, one of which nothing is cut at.
+_DEPTHS = 3
 
 
 def misplaced(trace: Trace, rows: Rows) -> Iterator[Correction]:
     """The corrections of places where a tool goes down without compensation, which are these rows; one a section."""
     for of_section in np.split(rows, np.flatnonzero(first_in_run(trace.mode.section[rows]))[1:]):
         yield from _of_section(trace, of_section)
+
+
+def idle(trace: Trace, rows: Rows) -> Iterator[Correction]:
+    """The corrections of depths to which a tool goes in steps, one without a cut behind it; rows as for misplaced."""
+    moving = np.flatnonzero(trace.path.moves & trace.mode.in_polar)
+    following = np.append(moving, -1)[np.searchsorted(moving, rows, side="right")]
+    cuts = trace.path.travels[following] & (trace.axes.motion[following] != Motion.RAPID)
+    cuts &= trace.mode.section[following] == trace.mode.section[rows]
+    words = trace.blocks.word_indices("Z")
+    depth = -trace.path.z
+    for row in rows[~cuts & (depth[rows] > 0)].tolist():
+        beside = (trace.mode.section[rows] == trace.mode.section[row]) & (rows != row)
+        beside &= np.abs(trace.path.end[rows] - trace.path.end[row]) <= ROUNDING
+        steps = np.diff(different(np.append(depth[rows[beside]], depth[row])))
+        # The first depth may be one to which a tool goes fast.
+        is_deeper = bool(beside.any() and depth[row] > depth[rows[beside]].min() + ROUNDING)
+        word = words[trace.run.row[words] == row]
+        if is_deeper and cuts[beside].all() and len(steps) + 1 >= _DEPTHS and np.ptp(steps) <= ROUNDING and len(word):
+            becomes = f"something would be cut at each of its {len(steps) + 1} depths"
+            yield Correction(row, int(word[-1]), "", "nothing is cut at it", "with a cut behind it", becomes, "depths")
 
 
 def _of_section(trace: Trace, rows: Rows) -> Iterator[Correction]:

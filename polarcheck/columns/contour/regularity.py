@@ -26,7 +26,7 @@ _PLAIN_ORDER, _FEWEST_CORNERS = 2, 5
 #: Share of the ends of arcs that may be tangent by chance.
 _SMOOTH_BY_CHANCE = 0.25
 #: Places at which a tool goes down, and lines that a curve is written as.
-_FEWEST_PLACES, _FEWEST_OF_CURVE = 4, 12
+_FEWEST_PLACES, _FEWEST_OF_CURVE = 3, 12
 #: Sections that may be one contour at several angles of C; nothing may be cut at one of them.
 _FEWEST_SECTIONS, _MOST_SECTIONS = 2, 36
 
@@ -115,15 +115,15 @@ class Regularity(Columns, frozen=True):
 
     @property
     def _misplaced(self) -> Iterable[Correction]:
-        """What makes the places regular where a tool goes down without compensation."""
+        """What makes the places and depths regular where a tool goes down without compensation."""
         trace, path = self.trace, self.trace.path
         goes_down = path.moves_z & ~path.travels & (path.z < path.z_before - ROUNDING) & trace.mode.in_polar
         rows = np.flatnonzero(goes_down & (trace.compensation.side == Side.OFF) & ~np.isnan(path.end))
         if len(rows) < _FEWEST_PLACES:
             return ()
-        from polarcheck.columns.contour.place_patterns import misplaced  # most sections go down at one place
+        from polarcheck.columns.contour.place_patterns import idle, misplaced  # most sections go down once
 
-        return misplaced(trace, rows)
+        return (*misplaced(trace, rows), *idle(trace, rows))
 
     @property
     def _off_curve(self) -> Iterable[Correction]:
