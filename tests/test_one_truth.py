@@ -880,3 +880,48 @@ def test_what_is_a_note_on_one_lathe_and_fails_a_program_on_another_is_to_decide
     assert (result.exit_code, "to decide: c-axis-not-engaged" in result.stderr) == (1, True)
     findings = report_of(result.stdout, target, CUTTER).findings
     assert ("c-axis-not-engaged", "warning") in [(finding.rule, finding.severity) for finding in findings]
+
+
+#: Ends of programs behind a condition that is not known, by control: those of which no section can come, and others.
+ENDS = {
+    "fanuc-30i": (
+        (
+            "#501=#501+1/IF[#501GE10]THEN #3000=1/M5/M30",
+            "IF[#501GE10]GOTO 9/M5/M30/N9M8/M5/M30",
+            "IF[#501GE10]GOTO 9/N9M99",
+        ),
+        ("N9G0 Z3./IF[#501GE10]GOTO 9/M30", "IF[#501GE10]GOTO 9/M30/N9 M99 P8", "IF[#501GE10]GOTO 9/M30/N9 M98 P7"),
+    ),
+    "haas-lathe": (
+        ("IF[#501GE10]THEN #3000=1/M30", "IF[#501GE10]GOTO 9/M135/M30/N9M8/M135/M30"),
+        (
+            "IF[#501GE10]GOTO 9/M30/N9G112/G1 X5.F9./G113/M30",
+            "WHILE[#501GE10]DO1/G0 Z3./END1/M30",
+            "IF[#501GE10]GOTO 9/M30/N9M#502/M30",
+        ),
+    ),
+    "siemens-transmit": (
+        ("IF R501>=10 GOTOF ENDE/M30/ENDE: M8/M30", "IF R501>=10/M0/ENDIF/M30"),
+        ("AGAIN: G0 Z3/IF R501>=10 GOTOB AGAIN/M30", "IF R501>=10 GOTOF ENDE/M30/ENDE: TRANSMIT/G1 X5/TRAFOOF/M30"),
+    ),
+    "okuma-osp": (
+        ("IF[VC501 GE 10]NEND/M2/NEND M12/M109/M2",),
+        ("NBACK G0 Z3/IF[VC501 GE 10]NBACK/M2", "IF[VC501 GE 10]NEND/M2/NEND G137/G101 X5/G136/M2"),
+    ),
+}
+
+
+@looped("control", ENDS)
+def test_a_condition_of_which_no_section_can_come_has_no_weight(control: str, tmp_path: Path) -> None:
+    end = program(control).rpartition("\nG0 ")[2].replace("\n", "/").rstrip("/").partition("/")[2]
+    for verdict, ends in zip(("pass", "unverified"), ENDS[control], strict=True):
+        for words in ends:
+            text = program(control, (f"/{end}", f"/{words}"))
+            assert (words, report_of(text, control, CUTTER).verdict) == (words, verdict)
+    # What such a condition leads to is compared all the same.
+    text = program(control, (f"/{end}", f"/{ENDS[control][0][-1]}"))
+    other = text.replace("M8\n", "M9\n").replace("M12\n", "M13\n").replace("M0\n", "M1\n").replace("N9M99", "N9M8\nM99")
+    assert other != text
+    for new, code in ((text, 0), (other, 1)):
+        assert certified(tmp_path, control, text, new).exit_code == code
+        assert ("not compared, because" in compared(tmp_path, control, text, new).stdout) is (new is other)

@@ -34,7 +34,7 @@ from polarcheck.foundation.arrays import Floats, Mask, Rows, first_in_run, first
 from polarcheck.foundation.errors import TooHardError
 from polarcheck.foundation.finding import Finding, NotEvaluated, Undecided
 from polarcheck.geometry.tolerances import CHORDS, CROSSINGS, FARTHEST
-from polarcheck.program.execution.run import Remark
+from polarcheck.program.execution.run import Remark, is_code
 from polarcheck.program.machines.machine import Machine, OwnMachine
 from polarcheck.program.machines.part_keys import DrawnPart
 from polarcheck.program.reading.excerpt import shortened
@@ -138,8 +138,21 @@ def _is_done_before(trace: Trace, remark: Remark) -> bool:
     return len(rows) > 0 and not bool(np.any((trace.mode.section[rows] >= 0) | (follows & np.isnan(position))))
 
 
-def unexecuted(tables: Tables) -> Iterator[NotEvaluated]:
-    """Report the blocks that were not executed, and those that were executed without full knowledge."""
+def _is_behind_sections(trace: Trace, remark: Remark) -> bool:
+    """A condition behind all sections, with no switch of the mode in what runs behind it, whatever it says."""
+    sections, words = trace.mode.sections, trace.text.words
+    if not len(sections) or not sections.left[-1] or remark.row <= sections.leave[-1]:
+        return False
+    switches = words.block[is_code(words, trace.machine.polar.on)]
+    return not bool((switches >= remark.block).any())
+
+
+def unexecuted(tables: Tables, *, of_metal: bool = True) -> Iterator[NotEvaluated]:
+    """
+    Report the blocks that were not executed, and those that were executed without full knowledge.
+
+    of_metal: conditions on which no section rests do not matter.
+    """
     trace: Trace = tables["trace"]
     language = tables["dialect"].recognised
     if language is not None:
@@ -150,7 +163,9 @@ def unexecuted(tables: Tables) -> Iterator[NotEvaluated]:
     remarks = Counter(
         (
             reason_of(remark, trace.machine),
-            bool(remark.values.get("matters", True)) and not _is_done_before(trace, remark),
+            bool(remark.values.get("matters", True))
+            and not _is_done_before(trace, remark)
+            and not (of_metal and _is_behind_sections(trace, remark)),
         )
         for remark in trace.run.remarks
     )

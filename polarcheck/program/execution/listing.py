@@ -12,7 +12,7 @@ from polarcheck.program.execution.arithmetic import Arithmetic
 from polarcheck.program.execution.custom_macro import read_statement
 from polarcheck.program.execution.macro import Variables, called_program
 from polarcheck.program.execution.programs import Program, ProgramName, block_text, find_programs, first_blocks, turns
-from polarcheck.program.execution.statement import Kind, Statement
+from polarcheck.program.execution.statement import Kind, Statement, Word
 from polarcheck.program.execution.structures import Structures, find_loops, find_structures
 from polarcheck.program.execution.variable_names import Names
 from polarcheck.program.machines.machine import Machine
@@ -105,6 +105,38 @@ class Listing:
         low, high = (bisect.bisect_left(self.stops, block) for block in (program.first, program.end))
         is_macro = self.text.blocks.is_macro
         return [(block, self.statement(block)) for block in self.stops[low:high] if is_macro[block]]
+
+    def runs_down(self, block: int) -> bool:
+        """Return True if from a block on its program calls nothing, computes no code and jumps to blocks below it."""
+        program = self.programs.around(block)
+        low, high = (bisect.bisect_left(self.stops, limit) for limit in (block, program.end))
+        return all(self._runs_down(self.statement(stop), block, program) for stop in self.stops[low:high])
+
+    def _runs_down(self, statement: Statement, block: int, program: Program) -> bool:
+        parts = (*statement.more, *filter(None, (statement.then,)))
+        if not all(self._runs_down(part, block, program) for part in parts):
+            return False
+        match statement.kind:
+            case Kind.GOTO | Kind.IF_GOTO:
+                steps = statement.jump.steps if statement.jump is not None else ()
+                blocks = self.programs.labels(program).get(statement.label, [])
+                if [step.name for step in steps] == ["number"]:
+                    blocks = self.programs.targets(program).get(round(steps[0].number), [])
+                return len(blocks) > 0 and blocks[0] > block
+            case Kind.NC:
+                codes = [word for word in statement.words if word.address in ("G", "M")]
+                return not any(word.written is None or self._switches_on(word) for word in codes)
+            case Kind.CALL:
+                is_return = statement.call in self.macro.program_returns
+                return is_return and not any(word.address == "P" for word in statement.words)
+            case Kind.STRUCTURE:
+                return statement.structure in ("IF", "ELSE", "ENDIF")
+            case _:
+                return statement.kind in (Kind.ASSIGN, Kind.OUTPUT, Kind.IF_THEN)
+
+    def _switches_on(self, word: Word) -> bool:
+        (step, *_) = word.value.steps
+        return f"{word.address}{step.number:g}" in self.machine.polar.on
 
     def loops(self, program: Program) -> Structures:
         """The loops of a program."""

@@ -38,11 +38,17 @@ class FlowFault(msgspec.Struct, frozen=True):
 
 
 class Remark(msgspec.Struct, frozen=True):
-    """Why a block was not executed, or not as the control would; values: for the reason, by name."""
+    """
+    Why a block was not executed, or not as the control would; values: for the reason, by name.
+
+    row: that was about to be executed at an unknown condition, from which a main program runs down to its end
+    (Listing.runs_down); else -1.
+    """
 
     kind: RemarkKind
     block: int
     values: dict[str, str | int | float] = {}
+    row: int = -1
 
 
 #: The number of a variable where nobody knows which is assigned.
@@ -177,6 +183,7 @@ def with_rows_behind(run: Run, rows: Rows) -> Run:
         unknown=np.insert(run.unknown, behind, False),
         depth=np.insert(run.depth, behind, run.depth[rows]),
         faults=tuple(msgspec.structs.replace(fault, row=moved(fault.row)) for fault in run.faults),
+        remarks=tuple(msgspec.structs.replace(remark, row=moved(remark.row)) for remark in run.remarks),
         assigned={moved(row): assigned for row, assigned in run.assigned.items()},
         broken_off=None if run.broken_off is None else np.insert(run.broken_off, behind, False),
         values=[msgspec.structs.replace(value, row=moved(value.row)) for value in run.values],

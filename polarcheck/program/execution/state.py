@@ -224,7 +224,10 @@ class State:
 
     def add_remark(self, kind: RemarkKind, block: int, **values: str | int | float) -> None:
         """Record, once for each block, why it was not executed as the control would."""
-        self._remarks.setdefault((kind, block), Remark(kind, block, values))
+        if (kind, block) not in self._remarks:
+            is_alone = kind == "condition-unknown" and not self.depth and self.modal is None
+            row = len(self.rows) if is_alone and self.listing.runs_down(block) else -1
+            self._remarks[kind, block] = Remark(kind, block, values, row)
 
     @property
     def faults(self) -> tuple[FlowFault, ...]:

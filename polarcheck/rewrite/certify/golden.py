@@ -123,10 +123,17 @@ def _not_known(trace: Trace) -> Iterator[Step]:
     for index in run.unknown_words:
         row, word = int(run.row[index]), executed_word(run, index)
         yield Step(row, int(lines[row]), ("not known", word), (), f"{word} of unknown value")
-    blocks = [remark.block for remark in run.remarks if remark.kind in BLOCKS_NOT_KNOWN] if len(trace) else []
-    for block, row in zip(blocks, rows_behind(trace, blocks) if blocks else (), strict=True):
-        text = "".join(trace.text.without_comments(block).split()).upper()
-        yield Step(row, int(trace.text.blocks.line[block]), ("not known", text), (), f"{text}: what runs is not known")
+    remarks = [remark for remark in run.remarks if remark.kind in BLOCKS_NOT_KNOWN] if len(trace) else []
+    blocks = {remark.block for remark in remarks}
+    # What such a condition leads to at the end of a program has no weight for the verdict: it is kept as it is written.
+    for remark in remarks:
+        if remark.row >= 0:
+            blocks.update(set(range(remark.block, len(trace.text.blocks))).difference(run.block.tolist()))
+    ordered = sorted(blocks)
+    for block, row in zip(ordered, rows_behind(trace, ordered) if ordered else (), strict=True):
+        if text := "".join(trace.text.without_comments(block).split()).upper():
+            line = int(trace.text.blocks.line[block])
+            yield Step(row, line, ("not known", text), (), f"{text}: what runs is not known")
 
 
 def _block_skips(trace: Trace) -> Iterator[Step]:

@@ -33,7 +33,7 @@ def incomparable(pair: tuple[Tables, Tables], terms: Terms) -> Iterator[NotCompa
     """Yield what of a run of each program cannot be compared."""
     traces: tuple[Trace, Trace] = pair[0]["trace"], pair[1]["trace"]
     for name, tables in zip(("old", "new"), pair, strict=True):
-        for entry in (*unexecuted(tables), *bounds_not_reported(tables, ())):
+        for entry in (*unexecuted(tables, of_metal=False), *bounds_not_reported(tables, ())):
             yield NotCompared(f"{name}: {entry.reason}", matters=entry.matters)
         unreadable = int(np.count_nonzero(tables["words"].is_unreadable))
         if unreadable:
