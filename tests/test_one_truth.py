@@ -925,3 +925,23 @@ def test_a_condition_of_which_no_section_can_come_has_no_weight(control: str, tm
     for new, code in ((text, 0), (other, 1)):
         assert certified(tmp_path, control, text, new).exit_code == code
         assert ("not compared, because" in compared(tmp_path, control, text, new).stdout) is (new is other)
+
+
+@looped(
+    ("control", "dwell", "same", "longer"),
+    [
+        ("fanuc-30i", "G4 P500", ("G4 X.5", "G4 U0.5"), ("G4 P501", "G4 X.6", "G4 X5")),
+        ("gsk-988", "G4 X.5", ("G4 P500",), ("G4 P.5", "G4")),
+        ("haas-lathe", "G4 P500", ("G4 P0.5",), ("G4 P0.501", "G4 P5")),
+        ("siemens-transmit", "G4 F.5", ("G4 F0.50",), ("G4 F.6", "G4 S.5")),
+    ],
+)
+def test_a_dwell_is_as_long_by_whichever_word(
+    control: str, dwell: str, same: Sequence[str], longer: Sequence[str], tmp_path: Path
+) -> None:
+    sound = program(control, ("/G42", f"/{dwell}/G42"))
+    for code, words in ((0, same), (1, longer)):
+        for word in words:
+            text = program(control, ("/G42", f"/{word}/G42"))
+            assert (word, min(compared(tmp_path, control, sound, text).exit_code, 1)) == (word, code)
+            assert (word, certified(tmp_path, control, sound, text).exit_code) == (word, code)

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from polarcheck.columns.feed.dwells import dwells, time_of_dwells
 from polarcheck.columns.filling import before, fill_down
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Floats, Mask, Rows, cached_property
@@ -197,6 +198,7 @@ class _Reader:
         self._is_same_machine = is_same_machine
         self._of_moves = _words_of_moves(trace) | (set() if with_sides else {"D"})
         self._special = special_rows(trace)
+        self._dwell = np.where(dwells(trace), 1000 * time_of_dwells(trace), np.nan)
         self._turns_side = _turns_side(trace) & with_sides
         self._is_left_out = trace.run.words.is_unreadable | _of_calls(trace)
         is_seen = _sets_state(trace) | (trace.mode.enters_again[trace.run.row[trace.blocks.g_words]] & (not with_sides))
@@ -236,6 +238,8 @@ class _Reader:
             return (token, None, text) if self._is_same_machine or text in _EVERYWHERE else None
         if not self._is_same_machine:
             return None
+        if name in self._trace.machine.feed.dwell_words and self._dwell[row] == self._dwell[row]:
+            return "P", float(self._dwell[row]), text  # whichever word says it [ms]
         if name in ("S", "T"):
             if not is_special:
                 if self._in_force.get(name) == value:
