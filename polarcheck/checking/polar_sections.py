@@ -16,7 +16,7 @@ from polarcheck.columns.modes.sections import Sections
 from polarcheck.columns.path.center import Center
 from polarcheck.columns.path.ramps import Ramps
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Floats, Mask, Rows, mask_at, side_by_side
+from polarcheck.foundation.arrays import Floats, Mask, Rows, column_at, mask_at, side_by_side
 from polarcheck.foundation.errors import TooHardError
 from polarcheck.foundation.finding import FileReport, KnownStock, PolarSection
 from polarcheck.foundation.states import Units
@@ -140,10 +140,8 @@ def _fastest(trace: Trace, c_feed: Floats, highest: Floats) -> Rows:
     is_highest: Mask = (
         (trace.mode.section >= 0) & (c_feed > 0) & (c_feed == np.append(highest, np.nan)[trace.mode.section])
     )
-    rows = np.full(len(trace.mode.sections), -1)
-    highest_rows = np.flatnonzero(is_highest)[::-1]
-    rows[trace.mode.section[highest_rows]] = highest_rows
-    return rows
+    rows = np.flatnonzero(is_highest)[::-1]
+    return column_at(len(trace.mode.sections), trace.mode.section[rows], rows, -1)
 
 
 def _ramp_used(trace: Trace, ramps: Ramps) -> Floats:

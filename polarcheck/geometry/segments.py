@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, Table, first_of_each, mask_at, ranges
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, Table, column_at, first_of_each, mask_at, ranges
 from polarcheck.foundation.errors import TooHardError
 from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.plane_path import PlanePath
@@ -89,11 +89,9 @@ def _angle_of_chords(arcs: Curves, tolerance: float) -> Floats:
 
 def chord_counts(moves: Curves, tolerance: float) -> Floats:
     """The approximate number of chords of each move; 0 for lines."""
-    result = np.zeros(len(moves))
     is_chorded = moves.is_arc & moves.is_known
     arcs = moves[is_chorded]
-    result[is_chorded] = np.abs(arcs.sweep) / _angle_of_chords(arcs, tolerance)
-    return result
+    return column_at(len(moves), is_chorded, np.abs(arcs.sweep) / _angle_of_chords(arcs, tolerance), 0.0)
 
 
 def first_of_its_kind(curves: Curves) -> Mask:

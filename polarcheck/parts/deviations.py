@@ -9,7 +9,7 @@ import numpy as np
 from polarcheck.columns.contour.overcuts import Overcuts
 from polarcheck.columns.contour.skipped_loops import SkipReason
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Columns, Floats, Mask, cached_property
+from polarcheck.foundation.arrays import Columns, Floats, Mask, cached_property, column_at
 from polarcheck.parts.area_comparisons import AreaComparisons
 from polarcheck.parts.contour_comparisons import ContourComparisons
 from polarcheck.parts.nominal_parts import NominalParts
@@ -80,18 +80,14 @@ class Deviations(Columns, frozen=True):
     @cached_property
     def largest(self) -> Floats:
         """The largest difference [mm] in the rows of `differs`, 0 elsewhere."""
-        column = np.zeros(len(self.trace))
-        for row, result in self._worst.items():
-            column[row] = result.difference.largest
-        return column
+        largest = [result.difference.largest for result in self._worst.values()]
+        return column_at(len(self.trace), [*self._worst], largest, 0.0)
 
     @cached_property
     def tolerance(self) -> Floats:
         """The tolerance [mm] in the rows of `differs`, NaN elsewhere."""
-        column = np.full(len(self.trace), np.nan)
-        for row, result in self._worst.items():
-            column[row] = result.tolerance
-        return column
+        tolerances = [result.tolerance for result in self._worst.values()]
+        return column_at(len(self.trace), [*self._worst], tolerances, np.nan)
 
     def of_row(self, row: int) -> Comparison:
         """The comparison reported in a row of `differs`."""

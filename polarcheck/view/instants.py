@@ -69,8 +69,7 @@ def _seen(point: Points, along: Points, share: Floats, is_behind: Mask) -> Point
 
 def _turned_by(move: Rows, toward: Points, is_behind: Mask) -> Floats:
     """Return the turn since the start of the move, as seen from the center [deg]; half a turn in it counts as 180."""
-    turn = np.zeros(len(move))
-    turn[1:] = np.degrees(angle_between(toward[:-1], toward[1:]))
+    turn = np.append(0.0, np.degrees(angle_between(toward[:-1], toward[1:])))[: len(move)]
     turn[is_behind] = 180.0
     begins = first_in_run(move)
     turn = np.nan_to_num(turn)

@@ -16,7 +16,7 @@ from polarcheck.columns.metal.coverage import Coverage, Left
 from polarcheck.columns.metal.finished import Level
 from polarcheck.columns.path.moves import Moves
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Floats, Points, Rows, mask_at, side_by_side
+from polarcheck.foundation.arrays import Floats, Points, Rows, first_in_run, mask_at, side_by_side
 from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.polygons import areas
 from polarcheck.geometry.polygons.faces import GRID
@@ -90,26 +90,13 @@ def left_marks(trace: Trace, coverage: Coverage, levels: Sequence[Level]) -> Ite
 
 def _deepest(trace: Trace, cuts: CutsOfRows) -> CutsOfRows:
     """Return the deepest cut of each line into each other line, at most MOST per section."""
-    order = np.lexsort((-cuts.depth, trace.blocks.line_in_file[cuts.into], trace.blocks.line_in_file[cuts.row]))
-    order = order[
-        _first_of_each(
-            trace.mode.section[cuts.row],
-            trace.blocks.line_in_file[cuts.row],
-            trace.blocks.line_in_file[cuts.into],
-            order,
-        )
-    ]
-    order = order[np.lexsort((-cuts.depth[order], trace.mode.section[cuts.row[order]]))]
-    section = trace.mode.section[cuts.row[order]]
+    line, section = trace.blocks.line_in_file, trace.mode.section[cuts.row]
+    order = np.lexsort((-cuts.depth, line[cuts.into], line[cuts.row], section))
+    order = order[first_in_run(section[order], line[cuts.row[order]], line[cuts.into[order]])]
+    order = order[np.lexsort((-cuts.depth[order], section[order]))]
+    section = section[order]
     is_chosen = mask_at(len(cuts.row), order[np.arange(len(order)) - np.searchsorted(section, section) < MOST])
     return cuts[is_chosen]
-
-
-def _first_of_each(section: Rows, line: Rows, second_line: Rows, order: Rows) -> Rows:
-    """Return the positions in `order` of the first of each section and pair of lines."""
-    keys = np.stack([section[order], line[order], second_line[order]], axis=1)
-    _, first = np.unique(keys, axis=0, return_index=True)
-    return np.sort(first)
 
 
 def _largest(trace: Trace, material_left: Left) -> Rows:

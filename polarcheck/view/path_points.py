@@ -57,8 +57,7 @@ def chords(curves: Curves, tolerance: float, most: int) -> tuple[Chords, float]:
             break
         tolerance *= 2
     parts = segments(curves, _SAGITTA * tolerance)
-    begins = np.ones(len(parts), bool)
-    begins[1:] = np.abs(parts.start[1:] - parts.end[:-1]) > ROUNDING
+    begins = np.append(True, np.abs(parts.start[1:] - parts.end[:-1]) > ROUNDING)[: len(parts)]
     index = np.arange(len(parts)) + np.cumsum(begins)
     total = len(parts) + int(np.count_nonzero(begins))
     point, move, is_first = np.zeros(total, complex), np.zeros(total, np.int64), np.zeros(total, bool)

@@ -6,7 +6,17 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, Table, column_at, first_in_run, last_in_run
+from polarcheck.foundation.arrays import (
+    Floats,
+    Mask,
+    Points,
+    Rows,
+    Table,
+    column_at,
+    first_in_run,
+    last_in_run,
+    mask_at,
+)
 from polarcheck.geometry import rates as of_moves
 from polarcheck.geometry.plane_path import SpacePath
 from polarcheck.view.drawn_moves import SectionMoves
@@ -157,9 +167,7 @@ def _without_straight(curves: Samples, rest: Rows, keep: Mask, first: int) -> Ro
     for column in (curves.c_feed, curves.x_feed, curves.feed):
         finite = np.abs(column[np.isfinite(column)])
         near &= off(column) <= _SHARE * float(finite.max(initial=0.0))
-    goes = np.zeros(len(rest), bool)
-    goes[middle] = near & ~keep[curves.move[inner]]
-    return rest[~goes]
+    return rest[~mask_at(len(rest), middle[near & ~keep[curves.move[inner]]])]
 
 
 def _extremes(curves: Samples, keep: Mask, most: int) -> Rows:

@@ -6,7 +6,7 @@ import numpy as np
 
 from polarcheck.columns.contour.passes import LEADS, Passes
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Columns, Mask, Rows, cached_property
+from polarcheck.foundation.arrays import Columns, Mask, Rows, cached_property, column_at
 from polarcheck.geometry.tolerances import ROUNDING
 
 #: Largest gap of a ring [mm].
@@ -85,9 +85,7 @@ class ContourDepths(Columns, frozen=True):
         count = np.add.reduceat(moved.astype(np.int64), passes.first)
         ring_first, ring_last = passes.ring
         few = (count > 0) & (count <= _MOST_CHANGES) & (ring_last - ring_first + 1 >= _LEAST_MOVES)
-        at_ends = np.zeros(len(passes.first), bool)
-        at_ends[passes.number[ring_first[passes.closed]]] = (
-            moved[ring_first[passes.closed]] | moved[ring_last[passes.closed]]
-        )
+        first, last = ring_first[passes.closed], ring_last[passes.closed]
+        at_ends = column_at(len(passes.first), passes.number[first], moved[first] | moved[last], False)
         chosen: Rows = np.flatnonzero(moved & (few & ~at_ends)[passes.number])
         return trace.blocks.mask_of(passes.row[chosen])

@@ -160,8 +160,8 @@ class MisplacedRamps(Columns, frozen=True):
     def cancelled_at_once(self) -> Mask:
         """Start-ups after which the next move on the plane is the offset cancel."""
         trace, moves = self.trace, self._moves
-        follows = np.zeros(len(moves.row), bool)
-        follows[:-1] = moves.starts_up[:-1] & moves.cancels[1:] & (moves.section[:-1] == moves.section[1:])
+        same = moves.section[:-1] == moves.section[1:]
+        follows = np.append(moves.starts_up[:-1] & moves.cancels[1:] & same, False)[: len(moves.row)]
         # Between them nothing may move but Z: a block of which it is not known where it leads may be the contour.
         opens = np.append(0, np.cumsum((trace.axes.moves & ~trace.axes.commands_z) | trace.run.unknown))
         following_rows = np.flatnonzero(follows)
@@ -184,8 +184,7 @@ class MisplacedRamps(Columns, frozen=True):
         starts = np.flatnonzero(moves.starts_up)
         # A G40 ends the pass before, be it one that takes nothing back.
         bare = ~moves.compensated & moves.at_feed & ~trace.compensation.writes_cancel[moves.row]
-        has_bare = np.zeros(n, bool)
-        has_bare[1:] = bare[:-1] & (moves.section[1:] == moves.section[:-1])
+        has_bare = np.append(False, bare[:-1] & (moves.section[1:] == moves.section[:-1]))
         starts = starts[has_bare[starts]]
         if not len(starts):
             return late

@@ -9,7 +9,7 @@ import numpy as np
 
 from polarcheck.columns.contour.passes import Passes, numbered
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Columns, Mask, Points, Rows, cached_property
+from polarcheck.foundation.arrays import Columns, Mask, Points, Rows, cached_property, different
 from polarcheck.foundation.states import Motion, Side
 from polarcheck.geometry.plane import cross
 
@@ -210,9 +210,8 @@ class PassDifferences(Columns, frozen=True):
             return []
         shape = stretch.shape[long]
         order = np.lexsort((shape, group))
-        several = np.zeros(int(group.max()) + 1, bool)
-        several[group[order][1:][(np.diff(group[order]) == 0) & (np.diff(shape[order]) != 0)]] = True
-        return [long[group == number] for number in np.flatnonzero(several).tolist()]
+        several = group[order][1:][(np.diff(group[order]) == 0) & (np.diff(shape[order]) != 0)]
+        return [long[group == number] for number in different(several).tolist()]
 
     def _differences_of(self, stretch: _Stretch, group: Rows) -> list[Difference]:
         """Each shape against the most frequent one that it differs from in a block or two; the rarer one is wrong."""

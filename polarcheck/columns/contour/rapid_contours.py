@@ -6,7 +6,7 @@ import numpy as np
 
 from polarcheck.columns.metal.bar import Bar
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Columns, Mask, cached_property
+from polarcheck.foundation.arrays import Columns, Mask, cached_property, column_at
 from polarcheck.foundation.states import Motion
 from polarcheck.geometry import polar
 
@@ -38,10 +38,10 @@ class RapidContours(Columns, frozen=True):
         rapid = at_depth & (trace.axes.motion == Motion.RAPID) & ~trace.modal.in_cycle & ~path.moves_z
         if not rapid.any():
             return np.asarray(rapid)
-        near = np.full(len(trace), np.nan)
-        near[at_depth] = polar.nearest(
+        nearest = polar.nearest(
             path.start[at_depth], path.end[at_depth], path.center[at_depth], trace.axes.motion[at_depth]
         )
+        near = column_at(len(trace), at_depth, nearest, np.nan)
         ramps = compensation.starts_up | compensation.cancels
         at_feed = at_depth & (trace.axes.motion != Motion.RAPID) & ~ramps
         # Without any move at feed the contour is all that the section has.

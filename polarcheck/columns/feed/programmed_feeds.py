@@ -9,7 +9,7 @@ import numpy as np
 from polarcheck.columns.filling import before, fill_down, happened
 from polarcheck.columns.path.tool_center import ToolCenter
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Columns, Floats, Mask, cached_property, first_in_run, repeated
+from polarcheck.foundation.arrays import Columns, Floats, Mask, cached_property, column_at, first_in_run, repeated
 from polarcheck.foundation.states import FeedMode, Motion, Units
 from polarcheck.geometry.tolerances import SHARE
 
@@ -145,12 +145,10 @@ class Feeds(Columns, frozen=True):
         """How long a move of the mode takes at its F, were that per minute [s]; 0 for rows without one, NaN unknown."""
         trace = self.trace
         rows = np.flatnonzero(trace.path.moves_at_feed & (trace.feedrate.feed_number > 0))
-        time = np.zeros(len(trace))
         depth = np.where(trace.path.moves_z[rows], np.abs(trace.path.z[rows] - trace.path.z_before[rows]), 0.0)
         length = trace.path.length[rows]
         distance = np.where(length == 0, depth, np.hypot(length, trace.path.rise[rows]))
-        time[rows] = 60 * distance / trace.feedrate.feed_number[rows]
-        return time
+        return column_at(len(trace), rows, 60 * distance / trace.feedrate.feed_number[rows], 0.0)
 
     @cached_property
     def takes_too_long(self) -> Mask:

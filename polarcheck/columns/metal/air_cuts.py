@@ -262,10 +262,10 @@ class AirCuts(Columns, frozen=True):
         if self.bar.known.source == "none":
             return np.zeros(len(trace), bool)
         rows = np.flatnonzero(self.walls)
-        beyond = np.full(len(trace), np.inf)
         # Where G41 and G42 only correct a tool center path, the cutter reaches R farther in, too.
         reach = trace.path.moves_of(rows).nearest - self.workpiece.radius[rows]
-        beyond[rows] = np.nan_to_num(reach - self.bar.outer(rows, trace.path.z[rows]), nan=-np.inf)
+        outside = np.nan_to_num(reach - self.bar.outer(rows, trace.path.z[rows]), nan=-np.inf)
+        beyond = column_at(len(trace), rows, outside, np.inf)
         return np.asarray(self._of_section(beyond, self.walls, np.minimum, np.inf) > ROUNDING)
 
     @property

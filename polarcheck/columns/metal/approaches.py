@@ -12,7 +12,7 @@ from polarcheck.columns.metal.bar import Bar
 from polarcheck.columns.metal.workpiece import ToolMoves, Workpiece
 from polarcheck.columns.path.tool_center import ToolCenter
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Columns, Floats, Mask, Points, Rows, cached_property
+from polarcheck.foundation.arrays import Columns, Floats, Mask, Points, Rows, cached_property, column_at
 from polarcheck.foundation.states import Motion
 from polarcheck.geometry import polar
 from polarcheck.geometry.tolerances import ROUNDING
@@ -112,8 +112,8 @@ class Approaches(Columns, frozen=True):
         stretch = np.cumsum(rises)
         walls = below & trace.compensation.compensates & trace.path.travels & ~trace.compensation.starts_up
         center = self._farthest(self.tool_center.farthest, walls, stretch)
-        programmed = np.full(len(trace), -np.inf)
-        programmed[walls] = polar.farthest(*trace.path.moves_of(np.flatnonzero(walls)).shape)
+        farthest = polar.farthest(*trace.path.moves_of(np.flatnonzero(walls)).shape)
+        programmed = column_at(len(trace), walls, farthest, -np.inf)
         is_within = center < self._farthest(programmed, walls, stretch) - ROUNDING
         farthest = np.where(is_within, center, self._farthest(self.tool_center.farthest, below, stretch))
         reach = farthest[rows] + np.nan_to_num(trace.offsets.cutter_diameter[rows]) / 2
@@ -146,10 +146,8 @@ class Approaches(Columns, frozen=True):
         return chosen, np.where(self._stands[chosen], enter, rows)
 
     def _column(self, values: Floats) -> Floats:
-        column = np.full(len(self.trace), np.nan)
         chosen, rows = self._index
-        column[rows[::-1]] = values[chosen[::-1]]
-        return column
+        return column_at(len(self.trace), rows[::-1], values[chosen[::-1]], np.nan)
 
     @cached_property
     def approaches(self) -> Mask:

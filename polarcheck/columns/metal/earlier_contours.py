@@ -11,7 +11,7 @@ from polarcheck.columns.contour.overcuts import Overcuts
 from polarcheck.columns.metal.bar import Bar
 from polarcheck.columns.metal.finished import Finished
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Columns, Floats, Mask, cached_property, different, side_by_side
+from polarcheck.foundation.arrays import Columns, Floats, Mask, cached_property, column_at, different, side_by_side
 from polarcheck.geometry.tolerances import ROUNDING
 
 if TYPE_CHECKING:
@@ -72,10 +72,7 @@ class EarlierContours(Columns, frozen=True):
     @cached_property
     def loss(self) -> Floats:
         """By row of a contour, how much of its walls or corners an earlier section has cut off [mm]; 0 for nothing."""
-        column = np.zeros(len(self.trace))
-        for row, (_, loss) in self._hits.items():
-            column[row] = loss
-        return column
+        return column_at(len(self.trace), [*self._hits], [loss for _, loss in self._hits.values()], 0.0)
 
     def earlier(self, row: int) -> int:
         """The first row of the contour that has cut into the one of this row."""

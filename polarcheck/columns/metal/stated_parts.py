@@ -23,7 +23,7 @@ from polarcheck.columns.words.comment_reader import (
 )
 from polarcheck.columns.words.comments import Comments, named_tool
 from polarcheck.columns.words.stock_comments import StockComments
-from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, cached_property, different, is_among
+from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, cached_property, column_at, different, is_among
 from polarcheck.foundation.states import Motion
 from polarcheck.geometry.shapes.shape import POLYGONS
 
@@ -133,10 +133,8 @@ class PartComments(Columns, frozen=True):
     @property
     def stated(self) -> Floats:
         """The size or depth of the comment [mm]; NaN elsewhere."""
-        column = np.full(len(self.trace), np.nan)
-        for row, hit in self.contradictions.items():
-            column[row] = hit.stated
-        return column
+        stated = [hit.stated for hit in self.contradictions.values()]
+        return column_at(len(self.trace), [*self.contradictions], stated, np.nan)
 
     # ---- which sections a comment speaks of ----
 

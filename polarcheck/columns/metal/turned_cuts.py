@@ -14,7 +14,7 @@ import numpy as np
 from polarcheck.columns.filling import happened
 from polarcheck.columns.metal.turning_tools import ABOVE_ALL, CENTER, INSERT, Cuts, TurningTools
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, cached_property, is_among
+from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, cached_property, is_among, mask_at
 from polarcheck.foundation.states import Motion
 from polarcheck.geometry.tolerances import ROUNDING
 
@@ -140,9 +140,8 @@ class TurnedCuts(Columns, frozen=True):
         A tool that turns outside leaves the metal away from the center.
         """
         call, rows = self.tools.tool_call, self.tools.moving_rows
-        inside = np.zeros(int(call.max(initial=0)) + 1, bool)
         bored = self._cycles.cuts
-        inside[call[bored.row[bored.is_bore]]] = True
+        inside = mask_at(int(call.max(initial=0)) + 1, call[bored.row[bored.is_bore]])
         if not len(rows):
             return inside
         x_before, x_after, z_before, z_after = self.tools.x_and_z

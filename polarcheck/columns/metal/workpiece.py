@@ -362,10 +362,9 @@ class Workpiece(Columns, frozen=True):
         if not len(walls) or not len(moves):
             return moves[np.zeros(len(moves), bool)]
         top = self._highest_wall
-        first = np.zeros(len(trace), bool)
         moving = np.flatnonzero(trace.axes.moves | trace.mode.enters)
         after = np.searchsorted(moving, np.flatnonzero(trace.mode.leaves), side="right")
-        first[moving[after[after < len(moving)]]] = True
+        first = trace.blocks.mask_of(moving[after[after < len(moving)]])
         low = (moves.is_rapid | first[moves.row]) & (moves.tip <= top + _CLEARANCE)
         if not low.any():
             return moves[low]
@@ -504,10 +503,9 @@ class Workpiece(Columns, frozen=True):
         walls, _ = self.overcuts.walls
         if not len(walls):
             return mask
-        pockets = np.zeros(len(trace.mode.sections) + 1, bool)
-        is_wall = trace.blocks.mask_of(walls.row)
-        first = trace.mode.first_in_section(is_wall)
-        pockets[trace.mode.section[walls.row[self._walls_of_pockets & first[walls.row]]]] = True
+        first = trace.mode.first_in_section(trace.blocks.mask_of(walls.row))
+        rows = walls.row[self._walls_of_pockets & first[walls.row]]
+        pockets = mask_at(len(trace.mode.sections) + 1, trace.mode.section[rows])
         moving = trace.mode.first_in_section(trace.mode.in_polar & trace.axes.moves)
         idle = moving & trace.axes.commands_z & ~trace.path.moves_z & ~trace.path.travels
         idle &= (trace.axes.motion == Motion.LINE) & (trace.path.z < -_CLEARANCE) & pockets[trace.mode.section]

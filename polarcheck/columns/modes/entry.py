@@ -10,7 +10,7 @@ from polarcheck.columns.filling import before, happened, last_row
 from polarcheck.columns.modes.origin import Origin
 from polarcheck.columns.path.tool_center import ToolCenter
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Columns, Floats, Mask, cached_property, is_among, side_by_side
+from polarcheck.foundation.arrays import Columns, Floats, Mask, cached_property, column_at, is_among, side_by_side
 from polarcheck.foundation.states import STATES, Motion
 
 #: Words and modal groups of G codes that may stand beside a D for the cutter.
@@ -137,9 +137,8 @@ class Entry(Columns, frozen=True):
         right = (trace.modal.state("plane") == 0) | trace.modal.has_state("plane", needed) | (not needed)
         selects = trace.mode.first_in_section((trace.blocks.codes(*needed) | trace.run.unknown) & trace.mode.in_polar)
         if selects.any():
-            first = np.full(len(trace.mode.sections), len(trace))
-            moves = trace.mode.first_in_section(trace.path.moves & trace.mode.in_polar)
-            first[trace.mode.section[moves]] = np.flatnonzero(moves)
+            moves = np.flatnonzero(trace.mode.first_in_section(trace.path.moves & trace.mode.in_polar))
+            first = column_at(len(trace.mode.sections), trace.mode.section[moves], moves, len(trace))
             rows = np.flatnonzero(selects)
             right[trace.mode.sections.enter[trace.mode.section[rows[rows <= first[trace.mode.section[rows]]]]]] = True
         return np.asarray(right)

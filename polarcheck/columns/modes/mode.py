@@ -10,7 +10,7 @@ from polarcheck.columns.modes.modal import ModalStates
 from polarcheck.columns.modes.sections import Marks, Sections, find_sections, section_column
 from polarcheck.columns.modes.tools import CalledTools
 from polarcheck.columns.path.axes import PlaneAxes
-from polarcheck.foundation.arrays import Columns, Mask, Rows, cached_property, is_among, mask_at
+from polarcheck.foundation.arrays import Columns, Mask, Rows, cached_property, first_in_run, is_among, mask_at
 from polarcheck.foundation.states import STATES, Motion, Side
 from polarcheck.program.execution.run import Run
 from polarcheck.program.machines.code_tables import code_numbers, code_set
@@ -125,9 +125,7 @@ class PolarMode(Columns, frozen=True):
     def first_in_section(self, mask: Mask) -> Mask:
         """The first row of a mask in each section."""
         rows = np.flatnonzero(mask & (self.section >= 0))
-        first = np.ones(len(rows), bool)
-        first[1:] = np.diff(self.section[rows]) > 0
-        return self.blocks.mask_of(rows[first])
+        return self.blocks.mask_of(rows[first_in_run(self.section[rows])])
 
     @cached_property
     def in_polar(self) -> Mask:

@@ -53,9 +53,9 @@ class ModeWords(Columns, frozen=True):
         """A G code in the mode that the profile does not allow there."""
         trace = self.trace
         allowed = code_set(trace.machine.polar.allowed_codes)
-        forbidden = np.zeros(len(trace.run.words), bool)
-        forbidden[trace.blocks.g_words] = ~allowed[trace.blocks.g_codes] & (trace.blocks.g_codes != NO_CODE)
-        return forbidden & self.in_rows(trace.mode.in_polar & ~trace.path.of_machine_z)
+        forbidden = ~allowed[trace.blocks.g_codes] & (trace.blocks.g_codes != NO_CODE)
+        in_mode = self.in_rows(trace.mode.in_polar & ~trace.path.of_machine_z)
+        return trace.blocks.words_at(trace.blocks.g_words[forbidden]) & in_mode
 
     @cached_property
     def ends_drilling(self) -> Mask:

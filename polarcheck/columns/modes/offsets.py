@@ -31,6 +31,7 @@ from polarcheck.foundation.arrays import (
     Mask,
     Rows,
     cached_property,
+    column_at,
     computed,
     different,
     is_uniform,
@@ -261,10 +262,9 @@ class ToolOffsets(Columns, frozen=True):
         index = self.blocks.word_indices(address)
         words, row = self.run.words, self.run.row[index]
         counts = ~words.has_point[index] & (self.machine.control.number_without_point == "least-increment")
-        column = np.full(len(self.run), np.nan)
         value = np.clip(words.value[index], -_LONGEST_NUMBER, _LONGEST_NUMBER)
-        column[row] = value * np.where(counts, self.lengths.least_increment[row], 1.0) * self.lengths.scale[row]
-        return column
+        length = value * np.where(counts, self.lengths.least_increment[row], 1.0) * self.lengths.scale[row]
+        return column_at(len(self.run), row, length, np.nan)
 
     def _set_by_variables(self) -> Settings:
         offsets = self.machine.offsets

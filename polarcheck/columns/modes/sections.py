@@ -105,8 +105,7 @@ def find_sections(marks: Marks) -> Sections:
     last_move = np.maximum(enter, _last_before(np.flatnonzero(marks.moves), limit))
     if not marks.rapid_stands:
         last_move = np.where(last_cut > enter, last_cut, last_move)
-    repeated = np.zeros(len(enter), bool)
-    repeated[1:] = (by_on & ~forgotten)[:-1]
+    repeated = np.append(False, by_on & ~forgotten)[:-1]
     final = np.append(np.flatnonzero(~repeated)[1:] - 1, len(enter) - 1)
     is_empty = (last_move <= enter) & ~repeated & ~by_on
     rapid_after = _first_after(np.flatnonzero(marks.tool_ends | marks.outside | marks.rapid), last_move, count)

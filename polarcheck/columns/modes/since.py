@@ -54,10 +54,8 @@ class Since(Columns, frozen=True):
         """The axis row above under the same G2 or G3 word; -1 for none."""
         trace = self.trace
         axes = np.flatnonzero(trace.modal.uses_axes & (trace.modal.motion_word >= 0))
-        column = np.full(len(trace), -1)
         same = trace.modal.motion_word[axes[1:]] == trace.modal.motion_word[axes[:-1]]
-        column[axes[1:][same]] = axes[:-1][same]
-        return column
+        return column_at(len(trace), axes[1:][same], axes[:-1][same], -1)
 
     def _written(self, written: Mask) -> Rows:
         return fill_down(self.row, written | self.trace.blocks.starts, -1)

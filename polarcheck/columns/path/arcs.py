@@ -244,7 +244,6 @@ class Arcs(Columns, frozen=True):
             trace.path.end[rows],
         )
         has_x = trace.blocks.has("X") & ~trace.modal.is_step("X") & (trace.axes.linear_axis == ord("X"))
-        had_x = np.zeros(len(trace), bool)
-        had_x[1:] = trace.mode.given_in_section(has_x)[:-1]
+        had_x = np.append(False, trace.mode.given_in_section(has_x))[:-1]
         x = end.real * factor - start.real * np.where((has_x & ~had_x)[rows], 1.0, factor)
         return np.asarray(x + 1j * (end - start).imag)

@@ -44,6 +44,5 @@ class Center(Columns, frozen=True):
         moves, stops = self.tool_center.moves, self.stops_at_center
         least = self.trace.lengths.least_step[moves.row]
         leaves = np.abs(moves.start) < least
-        follows = np.zeros(len(moves), bool)
-        follows[1:] = (moves.known | stops)[:-1] & (moves.section[1:] == moves.section[:-1])
+        follows = np.append(False, (moves.known | stops)[:-1] & (moves.section[1:] == moves.section[:-1]))[: len(moves)]
         return any_in_row(stops | ((moves.nearest < least) & ~(leaves & follows)), moves, len(self.trace))

@@ -318,10 +318,9 @@ class Infeed(Columns, frozen=True):
     @cached_property
     def is_simulated_in_part(self) -> Mask:
         """G12.1 with an E with more passes than are simulated."""
-        rows = np.zeros(len(self.trace), bool)
         before_last = self._counts_before_last
-        rows[[row for row in self._begins if before_last[row] > len(self._simulated(row, MOST_MOVES))]] = True
-        return rows
+        rows = [row for row in self._begins if before_last[row] > len(self._simulated(row, MOST_MOVES))]
+        return self.trace.blocks.mask_of(rows)
 
 
 def _between(moves: Moves, first: int, end: int) -> Moves:

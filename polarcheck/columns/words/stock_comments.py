@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import msgspec
 import numpy as np
+from numpy.typing import NDArray
 
 from polarcheck.columns.modes.executed_blocks import ExecutedBlocks
 from polarcheck.columns.words.comment_patterns import BAR
@@ -69,25 +72,23 @@ class StockComments(Columns, frozen=True):
     @cached_property
     def comment(self) -> Rows:
         """The number of the comment in text.comments; -1 for none."""
-        column = np.full(len(self.run), -1, np.int64)
-        for program, bar in self.of_program.items():
-            column[self.blocks.program == program] = bar.comment
-        return column
+        return self._by_program("comment", np.int64(-1))
 
     @cached_property
     def diameter(self) -> Floats:
         """Of a round bar [mm]; NaN where no comment states one."""
-        return self._sizes({program: bar.diameter for program, bar in self.of_program.items()})
+        return self._by_program("diameter", np.float64(np.nan))
 
     @cached_property
     def across_flats(self) -> Floats:
         """Of a hexagon bar [mm]; NaN where no comment states one."""
-        return self._sizes({program: bar.across_flats for program, bar in self.of_program.items()})
+        return self._by_program("across_flats", np.float64(np.nan))
 
-    def _sizes(self, of_program: dict[int, float]) -> Floats:
-        if not of_program:
-            return repeated(np.float64(np.nan), len(self.run))
-        column = np.full(len(self.run), np.nan)
-        for program, size in of_program.items():
-            column[self.blocks.program == program] = size
+    def _by_program(self, name: str, none: np.float64 | np.int64) -> NDArray[Any]:
+        """Per row what the comment of its program states; none: where there is no comment."""
+        if not self.of_program:
+            return repeated(none, len(self.run))
+        column = np.full(len(self.run), none)
+        for program, comment in self.of_program.items():
+            column[self.blocks.program == program] = getattr(comment, name)
         return column

@@ -15,6 +15,7 @@ from polarcheck.foundation.arrays import (
     column_at,
     first_in_run,
     is_among,
+    mask_at,
     repeated,
     side_by_side,
 )
@@ -74,7 +75,6 @@ class Written:
         all_blocks = self.words.block if block is None else block
         if not len(index):
             return repeated(np.int64(0), len(all_blocks))
-        counts = np.zeros(len(all_blocks), np.int64)
         order = np.lexsort((index, *kinds))
         blocks, begins = all_blocks[index[order]], np.zeros(len(index), bool)
         begins[0] = True
@@ -84,8 +84,7 @@ class Written:
         in_new_block = begins | first_in_run(blocks)
         is_habit = (np.bincount(of_kind) > often)[of_kind]
         count = np.where(is_habit, np.bincount(of_kind, in_new_block)[of_kind], 1)
-        counts[index[order]] = np.where(begins | ~is_habit, count, 0)
-        return counts
+        return column_at(len(all_blocks), index[order], np.where(begins | ~is_habit, count, 0), 0)
 
     # ---- the own language of a control that reads another one, too ----
 
@@ -122,12 +121,15 @@ class Written:
         if not letter:
             return np.zeros(len(words), bool)
         at = np.flatnonzero(words.address == ord(letter))
-        mask = np.zeros(len(words), bool)
         # CR= and RPL= are read as R, too: what is written tells them apart.
         excerpt = self.text.source.excerpt
-        mask[at] = [_PARAMETER.match(excerpt(start, start + 4)) is not None for start in words.start[at].tolist()]
+        numbered = [
+            index
+            for index, start in side_by_side(at, words.start[at])
+            if _PARAMETER.match(excerpt(start, start + 4)) is not None
+        ]
         is_readable = ~words.is_unreadable | self._has_blank
-        return np.asarray(mask & is_readable & ~self._in_other_language(words.start))
+        return np.asarray(mask_at(len(words), numbered) & is_readable & ~self._in_other_language(words.start))
 
     @cached_property
     def _has_blank(self) -> Mask:
@@ -154,10 +156,8 @@ class Written:
     @cached_property
     def _broken_blocks(self) -> Mask:
         """Per block of the file: anything in it is unreadable."""
-        mask = np.zeros(len(self.text.blocks), bool)
-        mask[self.words.block[self.words.is_unreadable]] = True
-        mask[self.text.strays.block] = True
-        return mask
+        unreadable = self.words.block[self.words.is_unreadable]
+        return mask_at(len(self.text.blocks), np.append(unreadable, self.text.strays.block))
 
     def first_beyond(self, counted: Mask, limit: int) -> Mask:
         """The first counted word of each block that exceeds the limit."""
@@ -166,10 +166,8 @@ class Written:
         is_next = np.append(np.ones(min(limit, len(index)), bool), block[limit:] != block[: max(len(block) - limit, 0)])
         beyond = ~is_next
         beyond[1:] &= is_next[:-1]
-        mask = np.zeros(len(self.words), bool)
         index = index[beyond]
-        mask[index[~self._in_broken_block(index)]] = True
-        return mask
+        return mask_at(len(self.words), index[~self._in_broken_block(index)])
 
     def in_block(self, counted: Mask, asked: Mask) -> Rows:
         """Per word of the mask `asked`: the number of counted words in its block; 0 for other words."""
@@ -256,10 +254,8 @@ class Written:
         words = self._g_words[wrong]
         if not len(words):
             return repeated(np.int64(0), len(self.words))
-        counts = np.zeros(len(self.words), np.int64)
         _, first, count = np.unique(self.words.value[words], return_index=True, return_counts=True)
-        counts[words[first]] = count
-        return counts
+        return column_at(len(self.words), words[first], count, 0)
 
     @cached_property
     def overruled_count(self) -> Rows:
@@ -291,13 +287,10 @@ class Written:
     @cached_property
     def is_first_lower_case(self) -> Mask:
         """The first word of the file with a lower case letter."""
-        mask = np.zeros(len(self.words), bool)
-        code = self.text.source.code
-        letter = code[self.words.start]
+        letter = self.text.source.code[self.words.start]
         index = np.flatnonzero((letter >= ord("a")) & (letter <= ord("z")))
         index = index[~np.isin(self.words.block[index], self.text.prose.block)]
-        mask[index[~self._in_broken_block(index)][:1]] = True
-        return mask
+        return mask_at(len(self.words), index[~self._in_broken_block(index)][:1])
 
     @cached_property
     def letter_count(self) -> Rows:

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 import msgspec
 import numpy as np
 
-from polarcheck.foundation.arrays import Floats, Mask, Points
+from polarcheck.foundation.arrays import Floats, Mask, Points, column_at, mask_at
 
 #: Ends that are nearer to each other are one point, and points so near to the line of a side lie on it [mm].
 _SAME = 0.004
@@ -134,8 +134,7 @@ def _simplified(corner: Points, bulge: Floats) -> Ring:
             joined = _joined(before[gone], after[gone], into[gone], out[gone])
             bulge = bulge.copy()
             bulge[gone - 1] = joined
-        stays = np.ones(len(corner), bool)
-        stays[gone] = False
+        stays = ~mask_at(len(corner), gone)
         corner, bulge = corner[stays], bulge[stays]
     return Ring(corner, bulge, bool((corner == start).any()))
 
@@ -150,12 +149,12 @@ def _is_within(before: Points, corner: Points, after: Points, into: Floats, out:
     if not (into * out > 0).any():
         return np.asarray(on_line)
     both, sweep = into * out > 0, np.abs(np.arctan(into)) + np.abs(np.arctan(out))
-    on_circle = np.zeros(len(corner), bool)
     first, second = (
         _center(begin[both], end[both], bulge[both])
         for begin, end, bulge in ((before, corner, into), (corner, after, out))
     )
-    on_circle[both] = (np.abs(first - second) <= 2 * _SAME) & (sweep[both] < 1.5)
+    is_on_circle = (np.abs(first - second) <= 2 * _SAME) & (sweep[both] < 1.5)
+    on_circle = column_at(len(corner), both, is_on_circle, False)
     return np.asarray(on_line | on_circle)
 
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from polarcheck.foundation.arrays import Floats, Rows
+from polarcheck.foundation.arrays import Floats, Rows, mask_at
 from polarcheck.geometry.comparison.anchors import longest_rise
 from polarcheck.rewrite.compare.compared_sections import Stretch
 
@@ -89,8 +89,7 @@ def _in_order(partner: Rows) -> Rows:
 
 def _pair_left_over(partner: Rows, ordered: Rows, count: int) -> None:
     """Pair the remaining sections between two pairs if both revisions have the same number of them there."""
-    free = np.ones(count, bool)
-    free[partner[partner >= 0]] = False
+    free = ~mask_at(count, partner[partner >= 0])
     bounds = zip(
         (-1, *ordered.tolist()), (*ordered.tolist(), len(partner)), (-1, *partner[ordered].tolist()),
         (*partner[ordered].tolist(), count), strict=True,

@@ -33,8 +33,7 @@ def turns_of(trace: Trace, moves: Moves, spans: Spans, pieces: Pieces) -> Turns:
     spans_of_pieces = spans[pieces.span]
     leaves = _seen(pieces.start, spans_of_pieces.directions(pieces.first[:, None])[:, 0])
     arrives = _seen(pieces.end, -spans_of_pieces.directions(pieces.last[:, None])[:, 0])
-    jump = np.zeros(len(turn))
-    jump[1:] = sense * np.degrees(angle_between(arrives[:-1], leaves[1:]))
+    jump = np.append(0.0, sense * np.degrees(angle_between(arrives[:-1], leaves[1:])))[: len(turn)]
     section = moves.section[move]
     begins = np.flatnonzero(np.append(True, np.diff(section) != 0)[: len(section)])
     c_from, _ = moves.c_angles

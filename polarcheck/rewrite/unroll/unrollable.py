@@ -83,9 +83,8 @@ def _of_rows(tables: Tables) -> Iterator[tuple[int, str]]:
     order = np.append(False, np.diff(moves.row) < 0)[: len(moves)]
     backwards = trace.blocks.mask_of(moves.row[order])
     infeed = trace.blocks.has(trace.machine.polar.infeed_word) & mode.enters
-    off_circle = np.zeros(len(trace), bool)
     off_by = np.abs(np.abs(moves.start - moves.center) - np.abs(moves.end - moves.center))
-    off_circle[moves.row[(moves.kind != Motion.LINE) & (off_by > trace.machine.arcs.tolerance)]] = True
+    off_circle = trace.blocks.mask_of(moves.row[(moves.kind != Motion.LINE) & (off_by > trace.machine.arcs.tolerance)])
     unknown_moves = UnknownMoves(trace)
     lost = unknown_moves.lost("X") | unknown_moves.lost(trace.machine.polar.rotary_address)
     corner_words = (*trace.machine.arcs.corners_not_made, ",A")

@@ -140,14 +140,12 @@ def _repeats(trace: Trace) -> tuple[bool, bool, bool]:
     rows = np.flatnonzero(path.travels & (trace.mode.section >= 0))
     if len(rows) < 2:
         return False, False, False
-    same = np.zeros(len(rows), bool)
-    same[1:] = trace.axes.motion[rows][1:] == trace.axes.motion[rows][:-1]
+    same = np.append(False, np.diff(trace.axes.motion[rows]) == 0)
     motion = blocks.listed(*MOVES.values())[rows]
     lines = trace.axes.motion[rows] == Motion.LINE
     still = (path.start[rows].real == path.end[rows].real) | (path.start[rows].imag == path.end[rows].imag)
     both = (trace.axes.programs_linear_axis & trace.axes.has_virtual_word)[rows]
-    feed = np.zeros(len(rows), bool)
-    feed[1:] = trace.feedrate.written_feed[rows][1:] == trace.feedrate.written_feed[rows][:-1]
+    feed = np.append(False, trace.feedrate.written_feed[rows][1:] == trace.feedrate.written_feed[rows][:-1])
     return (
         _is_usual(motion[same], False),
         _is_usual(both[lines & still], False),
