@@ -138,10 +138,8 @@ class ExecutedBlocks(Lookups, frozen=True):
         return self._column(f"distance {address}", lambda: self._distance(address, of_words))
 
     def _distance(self, address: str, of_words: NDArray[np.int16]) -> States:
-        column = np.zeros(len(self.run), np.int16)
         index = self.word_indices(address)
-        column[self.run.row[index]] = of_words[index]
-        return column
+        return column_at(len(self.run), self.run.row[index], of_words[index], 0).astype(np.int16)
 
     def has(self, *addresses: str) -> Mask:
         """True where the row has a word of any of the addresses; cannot be written to."""
@@ -154,9 +152,7 @@ class ExecutedBlocks(Lookups, frozen=True):
 
     def consists_of(self, *addresses: str) -> Mask:
         """True where the row has words of these addresses and no others, except N and block skip."""
-        allowed = np.zeros(256, bool)
-        named = [self.machine.address_number(address) for address in (*addresses, "N", "/") if address]
-        allowed[named] = True
+        allowed = mask_at(256, [self.machine.address_number(address) for address in (*addresses, "N", "/") if address])
         return self.has(*addresses) & ~self.with_words(~allowed[self.run.words.address])
 
     def in_rows(self, address: str, values: Floats) -> Floats:

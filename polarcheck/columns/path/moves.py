@@ -18,6 +18,7 @@ from polarcheck.foundation.arrays import (
     Rows,
     States,
     cached_property,
+    column_at,
     first_in_run,
     is_among,
     last_in_run,
@@ -135,10 +136,8 @@ class Moves(PlanePath, frozen=True, dict=True):
         known = np.flatnonzero(self.known)
         if 2 * len(known) > len(self):
             return np.where(self.known, function(*self.shape, *columns), np.nan)
-        values = np.full(len(self), np.nan)
         of_known: list[NDArray[Any]] = [*self.shape, *columns]
-        values[known] = function(*(column[known] for column in of_known))
-        return values
+        return column_at(len(self), known, function(*(column[known] for column in of_known)), np.nan)
 
 
 def z_along(trace: Trace, moves: Moves) -> tuple[Floats, Floats]:
@@ -307,9 +306,8 @@ def _arc_share(trace: Trace, tool: offset_path.ToolPath, row: Rows) -> Floats:
 
 def _cancel_vector(trace: Trace, row: Rows) -> Points:
     """I and J beside G40 say where the tool leaves (B-63324EN/03 p. 402)."""
-    vector = np.full(len(row), complex("nan+nanj"))
     cancels = np.flatnonzero(trace.compensation.writes_cancel[row])
     i, j = (words[row[cancels]] for words in trace.path.to_center)
     written = ~np.isnan(i) | ~np.isnan(j)
-    vector[cancels[written]] = (np.nan_to_num(i) + 1j * np.nan_to_num(j))[written]
-    return vector
+    vector = (np.nan_to_num(i) + 1j * np.nan_to_num(j))[written]
+    return column_at(len(row), cancels[written], vector, complex("nan+nanj"))

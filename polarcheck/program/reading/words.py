@@ -59,8 +59,7 @@ class Words(Table, frozen=True, dict=True):
         """The control cannot read the number; of adjacent words without digits, as in prose, only the first counts."""
         bad = (self.fault != NumberFault.NONE) & (self.fault != NumberFault.WRONG_DASH)
         empty = self.fault == NumberFault.NO_DIGITS
-        follows = np.zeros(len(self), bool)
-        follows[1:] = empty[:-1] & empty[1:] & (self.block[1:] == self.block[:-1])
+        follows = np.append(False, empty[:-1] & empty[1:] & (self.block[1:] == self.block[:-1]))[: len(self)]
         return np.asarray(bad & ~follows)
 
     @property
