@@ -153,10 +153,13 @@ def _run(
     reason: str = "",
     **arguments: Any,
 ) -> int:
+    import msgspec
+
     from polarcheck.commands import overwriting, running, signals
     from polarcheck.commands.progress import Bar
     from polarcheck.files.baselines import baseline_file
     from polarcheck.files.baselines.baseline import Baseline
+    from polarcheck.files.batch.tasks import with_settings
     from polarcheck.files.settings.of_programs import OfPrograms, Options
     from polarcheck.foundation.memory import keep_within_memory
     from polarcheck.program.reading import files
@@ -170,7 +173,7 @@ def _run(
     tasks = running.planned(paths, OfPrograms(applies), extensions, faults)
     target = output or _of_jobs(tasks)
     contents = read(target)
-    tasks = _with_baseline(tasks, target)
+    tasks = with_settings(tasks, lambda settings: msgspec.structs.replace(settings, baseline=target))
     overwriting.refuse_name(os.path.realpath(target), f"-o {files.display_path(target)}")
     checked = running.Runner(max_size, workers, cluster).check(tasks, Bar(len(tasks), not quiet), faults)
     status = faults.report()
@@ -196,18 +199,6 @@ def _of_jobs(tasks: list[Task]) -> Path:
         paths_listed = ", ".join(files.display_path(path) for path in sorted(named))
         raise UsageError(f"-o: these programs have several baselines, {paths_listed}; update those of one at a time")
     return Path(named.pop() if named else _FILE)
-
-
-def _with_baseline(tasks: list[Task], path: Path) -> list[Task]:
-    """Return the tasks with a baseline, which is written."""
-    import msgspec
-
-    of_settings = {}
-    for task in tasks:
-        old = task.settings
-        if id(old) not in of_settings:
-            of_settings[id(old)] = msgspec.structs.replace(old, baseline=path)
-    return [msgspec.structs.replace(task, settings=of_settings[id(task.settings)]) for task in tasks]
 
 
 def _updated(baseline: Baseline, before: Contents, checked: Checked, tasks: list[Task], reason: str) -> _Result:

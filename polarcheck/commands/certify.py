@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 from click.core import ParameterSource
@@ -45,14 +45,8 @@ def certify(
     /,
     manifest: str,
     folder: Path | None,
-    form: str,
-    outputs: list[tuple[str, Path]],
-    strict: bool,
-    update: bool,
-    names: tuple[str, ...],
     machines: tuple[str, ...],
-    color: str,
-    max_size: int,
+    **arguments: Any,
 ) -> None:
     """
     Check the programs of a post against FILE, a manifest: it says what a program of each feature and control must do.
@@ -81,18 +75,19 @@ def certify(
         raise UsageError("--machine: is for `certify init DIR`; the manifest names the machine of each control")
     if manifest == _INIT and not Path(manifest).exists():
         raise UsageError("init: give a folder: polarcheck certify init DIR")
-    ctx.exit(_certify(Path(manifest), form, outputs, strict, update, names, color, max_size, options.DEBUG in ctx.meta))
+    ctx.exit(_certify(Path(manifest), debug=options.DEBUG in ctx.meta, **arguments))
 
 
 def _certify(
     path: Path,
+    *,
     form: str,
     outputs: list[tuple[str, Path]],
     strict: bool,
     update: bool,
     names: tuple[str, ...],
     color: str,
-    most: int,
+    max_size: int,
     debug: bool,
 ) -> int:
     from polarcheck.commands.output import bug_lines, columns, in_color, say_lines, show, warn
@@ -110,14 +105,14 @@ def _certify(
     settings = certifying.conditions(loaded, certifying.needed(loaded, chosen))
     _refuse(outputs, loaded, settings)
     bar = Bar(len(settings), True)
-    case_runs = dict(bar.watched(certifying.runs(loaded, settings, most)))
+    case_runs = dict(bar.watched(certifying.runs(loaded, settings, max_size)))
     bugs = [run.bug for run in case_runs.values() if run.bug is not None]
     for bug in bugs:
         say_lines(bug_lines(bug, debug))
     certified = certifying.certified_cases(loaded, settings, case_runs)
     status = CLEAN
     if update:
-        status = _update(loaded, certified, frozenset(chosen))
+        _update(loaded, certified, frozenset(chosen))
         certified = certifying.certified_cases(loaded, settings, case_runs)
     certificate = certifying.certificate(loaded, {name: certified[name] for name in certified if name in chosen})
     for extra_form, output in outputs:
@@ -155,7 +150,7 @@ def _refuse(outputs: list[tuple[str, Path]], loaded: Loaded, settings: Mapping[s
             raise OutputError(f"-o {display_path(output)}: is a golden trace of the manifest; name another file")
 
 
-def _update(loaded: Loaded, certified: dict[str, Certified], chosen: frozenset[str]) -> int:
+def _update(loaded: Loaded, certified: dict[str, Certified], chosen: frozenset[str]) -> None:
     """Write the golden traces; say what changes."""
     from polarcheck.commands.output import say_lines, warn
     from polarcheck.rewrite.certify.updating import updates
@@ -166,7 +161,6 @@ def _update(loaded: Loaded, certified: dict[str, Certified], chosen: frozenset[s
         say_lines([line])
     if not any_golden:
         warn("--update: no case has a golden trace; `golden = FILE` names one")
-    return CLEAN
 
 
 def _report(certificate: Certificate, form: str, columns: int = COLUMNS, is_colored: bool = False) -> str:

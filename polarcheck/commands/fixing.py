@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import click
 
 from polarcheck.commands.exit_codes import BUG, CLEAN, COULD_NOT_RUN, FINDINGS
-from polarcheck.commands.options import option
+from polarcheck.commands.options import all_of, option
 from polarcheck.commands.output import bug_lines, say, say_lines, show, show_diff, warn
 from polarcheck.foundation.errors import OutputError, PolarcheckError, SourceError, TooHardError, UsageError
 
@@ -89,15 +89,12 @@ def wanted(function: Any) -> Any:
         return function(*arguments, fixes=Wanted(*(options.pop(name) for name in NAMES)), **options)
 
     functools.update_wrapper(collected, function)
-    decorated: Any = collected
-    for decorate in (
-        option("--backup", is_flag=True, help="With --fix, keep the old program as FILE.orig."),
-        option("--diff", is_flag=True, help="Show what --fix would change, and no report."),
-        click.option("--unsafe-fixes", is_flag=True, help="With --fix or --diff: those that move otherwise, too."),
+    return all_of(
         click.option("--fix", is_flag=True, help="Write the safe fixes into the programs, then check them."),
-    ):
-        decorated = decorate(decorated)
-    return decorated
+        click.option("--unsafe-fixes", is_flag=True, help="With --fix or --diff: those that move otherwise, too."),
+        option("--diff", is_flag=True, help="Show what --fix would change, and no report."),
+        option("--backup", is_flag=True, help="With --fix, keep the old program as FILE.orig."),
+    )(collected)
 
 
 def run(

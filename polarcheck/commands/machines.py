@@ -15,7 +15,7 @@ from polarcheck.commands.output import say, show
 from polarcheck.foundation.errors import MachineError, UsageError
 
 if TYPE_CHECKING:
-    from polarcheck.program.machines.profiles import Profile
+    pass
 
 
 @click.command(short_help="List the machines, show one, write or check one of your own.")
@@ -60,21 +60,23 @@ def machines(name: str | None, lathe: str | None, inherits: str | None, *, short
 
 
 def _profile(name: str) -> str:
+    from polarcheck.files.settings.of_programs import profile_of
     from polarcheck.reports.pages import manual
 
-    return manual.profile_text(_loaded(name))
+    return manual.profile_text(profile_of(name))
 
 
 def _check(name: str) -> int:
     """Show what is to say about a sound file, or all faults of one that is not; return the exit code."""
     from polarcheck.files.settings import selection
+    from polarcheck.files.settings.of_programs import profile_of
     from polarcheck.program.machines import faults, profiles
     from polarcheck.reports.pages import machine_check
     from polarcheck.rules.rule import load_all
 
     rules = load_all()
     try:
-        show(machine_check.text(_loaded(name), rules))
+        show(machine_check.text(profile_of(name), rules))
     except profiles.UnknownMachineError:
         raise
     except MachineError as first:
@@ -85,19 +87,13 @@ def _check(name: str) -> int:
     return CLEAN
 
 
-def _loaded(name: str) -> Profile:
-    """Load a profile. Raises MachineError if it cannot be used, or names unknown rules."""
-    from polarcheck.files.settings.of_programs import profile_of
-
-    return profile_of(name)
-
-
 def _write(name: str, inherits: str, *, short: bool) -> Path:
     """Write NAME.toml into the working folder; an existing file is not overwritten."""
+    from polarcheck.files.settings.of_programs import profile_of
     from polarcheck.program.reading import files
     from polarcheck.reports.pages import new_machine
 
-    _loaded(inherits)
+    profile_of(inherits)
     path = Path(name if name.endswith(".toml") else f"{name}.toml")
     if os.path.lexists(path):
         raise UsageError(f"{path} is there already")

@@ -236,7 +236,7 @@ _single_block_skip = narrower(
 )
 
 
-def _all(*decorators: Decorator) -> Decorator:
+def all_of(*decorators: Decorator) -> Decorator:
     """Combine decorators, in the order in which the help shows them."""
 
     def decorated(command: Any) -> Any:
@@ -258,14 +258,14 @@ def executing(what: str, *, both: bool = True, machine: Decorator = machine) -> 
     first = map(setting, ("changes", "tools", "offsets", "units", "config"))
     block_skip = setting("block_skip") if both else _single_block_skip
     second = map(setting, ("subprograms", "max_blocks", "max_statements", "max_seconds", "radius_from_comments"))
-    return _all(machine, *first, no_config, block_skip, *second, setting("encoding", what))
+    return all_of(machine, *first, no_config, block_skip, *second, setting("encoding", what))
 
 
 #: The options that say what programs should make.
-comparing = _all(*map(setting, ("drawings", "drawing_layers", "tolerance")))
+comparing = all_of(*map(setting, ("drawings", "drawing_layers", "tolerance")))
 
 #: The options that decide which rules run, and which findings fail.
-judging = _all(
+judging = all_of(
     *map(setting, ("select", "ignore", "severities")),
     setting("fail_on", show_default="warning"),
     *map(setting, ("max_warnings", "strict", "inline")),

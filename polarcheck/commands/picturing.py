@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -69,7 +69,7 @@ class Pictures:
         self.drawn: dict[str, Drawn] = {}
         self.also: Callable[[FileReport, Drawn], None] = lambda report, drawn: None
 
-    def split(self, outcomes: Iterable[Outcome]) -> Iterator[Outcome]:
+    def split(self, outcomes: Iterable[Outcome]) -> Generator[Outcome, None, None]:
         """Yield the outcomes without their pictures, which are stored."""
         from polarcheck.foundation.finding import UNREADABLE, FileReport
 

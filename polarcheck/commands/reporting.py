@@ -13,7 +13,7 @@ from polarcheck.commands.options import option
 from polarcheck.foundation.errors import OutputError, UsageError, why
 
 if TYPE_CHECKING:
-    from polarcheck.checking.settings import Extra, Settings
+    from polarcheck.checking.settings import Extra
     from polarcheck.files.batch.tasks import Task
     from polarcheck.foundation.finding import Report, Summary
     from polarcheck.reports import Background
@@ -63,15 +63,12 @@ def with_makes(tasks: Sequence[Task], forms: Iterable[str]) -> list[Task]:
         return list(tasks)
     import msgspec
 
+    from polarcheck.files.batch.tasks import with_settings
     from polarcheck.reports.made_parts.makes import with_makes
 
-    of_settings: dict[int, Settings] = {}
-    for task in tasks:
-        settings = task.settings
-        # Tasks with the same settings share them: other processes get them once.
-        if id(settings) not in of_settings:
-            of_settings[id(settings)] = msgspec.structs.replace(settings, extras=(*settings.extras, with_makes))
-    return [msgspec.structs.replace(task, settings=of_settings[id(task.settings)]) for task in tasks]
+    return with_settings(
+        tasks, lambda settings: msgspec.structs.replace(settings, extras=(*settings.extras, with_makes))
+    )
 
 
 def unread(summary: Summary) -> list[str]:

@@ -61,10 +61,11 @@ def rewriting(*of_command: Decorator, machine: Decorator = options.machine) -> D
             ctx.exit(_run(function(**arguments), request, is_debug=options.DEBUG in ctx.meta, **shared))
 
         functools.update_wrapper(called, function)
-        command: Any = click.pass_context(called)
-        for decorate in reversed((*new_programs.OPTIONS, standard_input.filename, *_OF_FILES)):
-            command = decorate(command)
-        command = options.executing("programs", machine=machine)(command)
+        shared_options = options.all_of(
+            options.executing("programs", machine=machine),
+            *new_programs.OPTIONS, standard_input.filename, *_OF_FILES,
+        )  # fmt: skip
+        command: Any = shared_options(click.pass_context(called))
         own: set[str] = set()
         for decorate in reversed(of_command):
             command = decorate(command)

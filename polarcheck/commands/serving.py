@@ -6,14 +6,14 @@ import contextlib
 import hashlib
 import os
 import tempfile
-from collections.abc import Generator, Iterable, Iterator, Sequence
+from collections.abc import Generator, Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import click
 
 from polarcheck.commands import picturing, running, watching
-from polarcheck.commands.options import option
+from polarcheck.commands.options import all_of, option
 from polarcheck.commands.output import bug_lines, say_lines, show
 from polarcheck.foundation.errors import PolarcheckError, UsageError
 from polarcheck.program.reading.files import size, write
@@ -34,20 +34,15 @@ _FIRST_FILE = "first.html"
 _FIRST = ""
 
 
-def options(command: Any) -> Any:
-    """Add the options of serving to a command."""
-    for decorator in (
-        option("--open", "opens", is_flag=True, help="With --serve, show the page in the browser."),
-        option(
-            "--port", type=click.IntRange(0, 65535), metavar="N",
-            help="With --serve, the port on 127.0.0.1; 0, the default, takes a free one.",
-        ),
-        option(
-            "--serve", is_flag=True, help="Serve the page to this machine alone, anew after each change, until Ctrl-C."
-        ),
-    ):  # fmt: skip
-        command = decorator(command)
-    return command
+#: The options of serving.
+options = all_of(
+    option("--serve", is_flag=True, help="Serve the page to this machine alone, anew after each change, until Ctrl-C."),
+    option(
+        "--port", type=click.IntRange(0, 65535), metavar="N",
+        help="With --serve, the port on 127.0.0.1; 0, the default, takes a free one.",
+    ),
+    option("--open", "opens", is_flag=True, help="With --serve, show the page in the browser."),
+)  # fmt: skip
 
 
 class Wish(NamedTuple):
@@ -190,7 +185,7 @@ class _Rounds:
 
         workers = self._wish.workers if self.count == 1 else 1
         with batch_run.outcomes(tasks, self._wish.most, workers) as outcomes:
-            yield self._pages.taken(outcomes)
+            yield self._pages.split(outcomes)
 
 
 class _Pages(picturing.Pictures):
@@ -214,10 +209,6 @@ class _Pages(picturing.Pictures):
         if self._site.get(FILE_NAME) is None:
             data = library().encode()
             self._site.put(FILE_NAME, Served(lambda: data, "text/javascript; charset=utf-8", ""))
-
-    def taken(self, outcomes: Iterable[Outcome]) -> Generator[Outcome, None, None]:
-        """Yield the outcomes without their drawings; their pages are put on the site."""
-        yield from self.split(outcomes)
 
     def store(self, outcome: Outcome, drawn: Drawn) -> None:
         """Put the page of a program on the site."""

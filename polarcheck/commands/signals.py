@@ -7,7 +7,7 @@ import sys
 import threading
 from typing import Any
 
-from polarcheck.foundation.ending import INTERRUPTED, TERMINATED, Terminated
+from polarcheck.foundation.ending import INTERRUPTED, TERMINATED, Terminated, handle
 
 #: After this time the destructor or callback has returned [s].
 _UNTIL_AGAIN = 0.01
@@ -15,14 +15,7 @@ _UNTIL_AGAIN = 0.01
 
 def listen() -> None:
     """Turn Ctrl-C, SIGTERM and Ctrl-Break of Windows into exceptions, unless the parent process ignores them."""
-    for name, handler in (
-        ("SIGINT", signal.default_int_handler),
-        ("SIGTERM", _terminated),
-        ("SIGBREAK", _terminated),
-    ):
-        number = getattr(signal, name, None)
-        if number is not None and signal.getsignal(number) not in (signal.SIG_IGN, None):
-            signal.signal(number, handler)
+    handle({"SIGINT": signal.default_int_handler, "SIGTERM": _terminated, "SIGBREAK": _terminated})
     sys.unraisablehook = _deliver_again
 
 

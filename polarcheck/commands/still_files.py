@@ -5,12 +5,12 @@ from __future__ import annotations
 import importlib.util
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
 from polarcheck.commands import picturing
-from polarcheck.commands.options import option
+from polarcheck.commands.options import all_of, option
 from polarcheck.commands.output import warn
 from polarcheck.foundation.errors import UsageError
 from polarcheck.program.reading.files import display_path, write
@@ -24,19 +24,16 @@ if TYPE_CHECKING:
 _FORMATS = ("png", "svg")
 
 
-def options(command: Any) -> Any:
-    """Add the options of pictures for documents to a command."""
-    help_ = "The face of each section as {}, for a document; or a folder, for a file of each program."
-    for decorator in (
-        option(
-            "--section", "chosen", multiple=True, type=click.IntRange(1), metavar="N",
-            help="With --png or --svg, only this section; the first is 1.",
-        ),
-        option("--svg", metavar="FILE", help=help_.format("SVG")),
-        option("--png", metavar="FILE", help=help_.format("PNG")),
-    ):  # fmt: skip
-        command = decorator(command)
-    return command
+_HELP = "The face of each section as {}, for a document; or a folder, for a file of each program."
+#: The options of pictures for documents.
+options = all_of(
+    option("--png", metavar="FILE", help=_HELP.format("PNG")),
+    option("--svg", metavar="FILE", help=_HELP.format("SVG")),
+    option(
+        "--section", "chosen", multiple=True, type=click.IntRange(1), metavar="N",
+        help="With --png or --svg, only this section; the first is 1.",
+    ),
+)  # fmt: skip
 
 
 class Stills:

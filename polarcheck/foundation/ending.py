@@ -7,7 +7,7 @@ import errno
 import os
 import signal
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NoReturn
 
 #: Exit codes as shells count them: 128 plus the number of the signal.
@@ -22,10 +22,15 @@ def end_on_signals() -> None:
 
     A signal that the parent process has set to be ignored stays ignored.
     """
-    for name in ("SIGINT", "SIGTERM", "SIGBREAK"):
+    handle(dict.fromkeys(("SIGINT", "SIGTERM", "SIGBREAK"), _end_on))
+
+
+def handle(handlers: Mapping[str, Callable[[int, Any], None]]) -> None:
+    """Set the handlers of signals, by name, that the system has and that the parent process does not ignore."""
+    for name, handler in handlers.items():
         number = getattr(signal, name, None)
         if number is not None and signal.getsignal(number) not in (signal.SIG_IGN, None):
-            signal.signal(number, _end_on)
+            signal.signal(number, handler)
 
 
 def _end_on(number: int, frame: Any) -> NoReturn:

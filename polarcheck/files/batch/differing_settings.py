@@ -7,20 +7,14 @@ from collections.abc import Iterable, Iterator, Sequence
 
 import msgspec
 
-from polarcheck.checking.settings import Settings
-from polarcheck.files.batch.tasks import Task
+from polarcheck.files.batch.tasks import Task, with_settings
 from polarcheck.foundation.errors import counted
 from polarcheck.foundation.finding import FileReport
 
 
 def with_own_settings(tasks: Sequence[Task]) -> list[Task]:
     """Return the tasks of a run whose settings differ: the report of each file has its own."""
-    # Tasks with the same settings share them: other processes get them once.
-    marked: dict[int, Settings] = {}
-    for task in tasks:
-        if id(task.settings) not in marked:
-            marked[id(task.settings)] = msgspec.structs.replace(task.settings, differs=True)
-    return [msgspec.structs.replace(task, settings=marked[id(task.settings)]) for task in tasks]
+    return with_settings(tasks, lambda settings: msgspec.structs.replace(settings, differs=True))
 
 
 def too_many_warnings(reports: Iterable[FileReport], tasks: Iterable[Task]) -> Iterator[str]:

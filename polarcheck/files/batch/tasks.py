@@ -66,6 +66,15 @@ class Task(msgspec.Struct, frozen=True):
         return files.display_path(self.place)
 
 
+def with_settings(tasks: Sequence[Task], changed: Callable[[Settings], Settings]) -> list[Task]:
+    """The tasks with changed settings; those with the same ones share them still: other processes get them once."""
+    new: dict[int, Settings] = {}
+    for task in tasks:
+        if id(task.settings) not in new:
+            new[id(task.settings)] = changed(task.settings)
+    return [msgspec.structs.replace(task, settings=new[id(task.settings)]) for task in tasks]
+
+
 class Basis(msgspec.Struct, frozen=True):
     """
     What an outcome rests on beside the settings, so that it can be used again while that is the same.
