@@ -9,7 +9,7 @@ from polarcheck.columns.modes.since import Since
 from polarcheck.columns.path.tool_center import OtherRadius
 from polarcheck.columns.path.trial import Trial
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Columns, Floats, Mask, cached_property
+from polarcheck.foundation.arrays import Columns, Floats, Mask, cached_property, folded
 from polarcheck.foundation.time_limit import keep_time
 
 #: A cutter of this share of R counts as fitting everywhere; relative accuracy of the result; most trials.
@@ -28,8 +28,7 @@ class Fitting(Columns, frozen=True):
     def _worst(self, values: Floats) -> Floats:
         """The largest of these values in the loop of each row, for each row."""
         loop = self.since.compensation
-        worst = np.zeros(int(loop.max(initial=0)) + 1)
-        np.maximum.at(worst, loop, values)
+        worst = folded(np.maximum, loop, values, int(loop.max(initial=0)) + 1, 0.0)
         return worst[loop]
 
     def _any(self, rows: Mask) -> Mask:
@@ -70,8 +69,7 @@ class Fitting(Columns, frozen=True):
             trial = self._trial(tried)
             fails = self._any(trial.fails)
             low, high = np.where(fails, low, tried), np.where(fails, tried, high)
-            depth = np.zeros(len(programmed))
-            np.maximum.at(depth, trial.cuts.row, trial.cuts.depth)
+            depth = folded(np.maximum, trial.cuts.row, trial.cuts.depth, len(programmed), 0.0)
             nearer = tried - self._worst(depth) / 2
             half = np.where(low > 0, (low + high) / 2, np.where(nearer < tried, nearer, tried / 2))
             tried = np.where(fails, half, np.minimum(low * (1 + _NEAR), half))

@@ -20,6 +20,7 @@ from polarcheck.foundation.arrays import (
     cached_property,
     column_at,
     different,
+    folded,
     repeated,
 )
 from polarcheck.foundation.states import Side
@@ -95,9 +96,7 @@ class CutsOfRows(Table, frozen=True):
         """The depth of the deepest cut of each row [mm], 0 for none; count: the number of rows."""
         if not len(self):
             return repeated(np.float64(0), count)
-        column = np.zeros(count)
-        np.maximum.at(column, self.row, self.depth)
-        return column
+        return folded(np.maximum, self.row, self.depth, count, 0.0)
 
 
 class Overcuts:
@@ -297,8 +296,7 @@ class Overcuts:
         apart = np.abs(end - start) > 2 * np.abs(self.trace.compensation.radius[walls.row[first]])
         ends = np.where(apart, np.minimum(np.abs(start), np.abs(end)), np.inf)
         section = self.trace.mode.section[walls.row]
-        least = np.full(len(self.trace.mode.sections) + 1, np.inf)
-        np.fmin.at(least, section[first], ends)
+        least = folded(np.fmin, section[first], ends, len(self.trace.mode.sections) + 1, np.inf)
         return least[section]
 
     @cached_property

@@ -8,7 +8,7 @@ from polarcheck.columns.metal.air_cuts import AirCuts
 from polarcheck.columns.metal.bar import Bar
 from polarcheck.columns.metal.workpiece import Workpiece
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Columns, Mask, Points, Rows, cached_property
+from polarcheck.foundation.arrays import Columns, Mask, Points, Rows, cached_property, folded
 from polarcheck.geometry.tolerances import ROUNDING
 
 #: A pass that ends no deeper inside the bar is meant for its edge [mm].
@@ -60,10 +60,10 @@ class PassEnds(Columns, frozen=True):
         """Cuts of passes: in offset mode, or without compensation at no more than the feed of a cut."""
         trace = self.trace
         compensated = trace.compensation.compensates
-        slowest = np.full(len(trace.mode.sections) + 1, np.inf)
         rows = np.flatnonzero(self.air_cuts.walls & ~np.isnan(trace.feedrate.feed))
-        np.minimum.at(slowest, trace.mode.section[rows], trace.feedrate.feed[rows])
-        slow = trace.feedrate.feed < _FASTER * slowest[trace.mode.section]
+        section, feed = trace.mode.section, trace.feedrate.feed
+        slowest = folded(np.minimum, section[rows], feed[rows], len(trace.mode.sections) + 1, np.inf)
+        slow = feed < _FASTER * slowest[section]
         return np.asarray(self.air_cuts.walls & (compensated | slow))
 
     def _goes_back(self, out: Rows, start: Points) -> Mask:

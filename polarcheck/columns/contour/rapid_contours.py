@@ -6,7 +6,7 @@ import numpy as np
 
 from polarcheck.columns.metal.bar import Bar
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Columns, Mask, cached_property, column_at
+from polarcheck.foundation.arrays import Columns, Mask, cached_property, column_at, folded
 from polarcheck.foundation.states import Motion
 from polarcheck.geometry import polar
 
@@ -45,8 +45,7 @@ class RapidContours(Columns, frozen=True):
         ramps = compensation.starts_up | compensation.cancels
         at_feed = at_depth & (trace.axes.motion != Motion.RAPID) & ~ramps
         # Without any move at feed the contour is all that the section has.
-        reach = np.full(len(trace.mode.sections) + 1, -np.inf)
-        np.fmax.at(reach, trace.mode.section[at_feed], near[at_feed])
+        reach = folded(np.fmax, trace.mode.section[at_feed], near[at_feed], len(trace.mode.sections) + 1, -np.inf)
         reach[np.isinf(reach)] = np.inf
         inside = rapid & ~ramps & (near < reach[trace.mode.section] + _SAME)
         goes_straight = near >= np.fmin(np.abs(path.start), np.abs(path.end)) - _SAME

@@ -7,7 +7,7 @@ import numpy as np
 from polarcheck.columns.path.ramps import Ramps
 from polarcheck.columns.path.tool_center import ToolCenter
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Floats, Mask, Rows, cached_property, mask_at
+from polarcheck.foundation.arrays import Floats, Mask, Rows, cached_property, folded, mask_at
 from polarcheck.foundation.states import Motion, Side
 from polarcheck.geometry.tolerances import ROUNDING, SHARE
 
@@ -154,9 +154,8 @@ class FeedRanges:
     def _most(self, values: Floats) -> Floats:
         """The largest value of the moves of a section along its contours at an F for cutting; -inf without one."""
         trace = self.trace
-        most = np.full(len(trace.mode.sections) + 1, -np.inf)
         rows = np.flatnonzero(self._slow & np.isfinite(values))
-        np.maximum.at(most, trace.mode.section[rows], values[rows])
+        most = folded(np.maximum, trace.mode.section[rows], values[rows], len(trace.mode.sections) + 1, -np.inf)
         return np.where(trace.mode.section >= 0, most[trace.mode.section], -np.inf)
 
     @cached_property

@@ -9,7 +9,16 @@ import numpy as np
 from polarcheck.columns.filling import before, fill_down, happened
 from polarcheck.columns.path.tool_center import ToolCenter
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Columns, Floats, Mask, cached_property, column_at, first_in_run, repeated
+from polarcheck.foundation.arrays import (
+    Columns,
+    Floats,
+    Mask,
+    cached_property,
+    column_at,
+    first_in_run,
+    folded,
+    repeated,
+)
 from polarcheck.foundation.states import FeedMode, Motion, Units
 from polarcheck.geometry.tolerances import SHARE
 
@@ -67,10 +76,10 @@ class Feeds(Columns, frozen=True):
         trace, nearest = self.trace, self.tool_center.nearest
         of_contour = trace.compensation.compensates & ~trace.compensation.starts_up & trace.path.travels
         of_contour &= trace.mode.in_polar & ~np.isnan(nearest)
-        least = np.full(len(trace.mode.sections) + 1, np.nan)
-        np.fmin.at(least, trace.mode.section[of_contour], nearest[of_contour])
+        section, count = trace.mode.section, len(trace.mode.sections) + 1
+        least = folded(np.fmin, section[of_contour], nearest[of_contour], count, np.nan)
         least[-1] = np.nan
-        return np.asarray(~of_contour & (nearest < _STRAYS * least[trace.mode.section]))
+        return np.asarray(~of_contour & (nearest < _STRAYS * least[section]))
 
     @property
     def is_only_fast(self) -> Mask:

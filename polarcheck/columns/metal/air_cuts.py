@@ -211,8 +211,7 @@ class AirCuts(Columns, frozen=True):
         # Z goes down behind it, in the section or with its first move afterwards.
         falls = z < trace.path.z_before - ROUNDING
         down, section = np.flatnonzero(falls & (trace.mode.section >= 0)), trace.mode.section
-        latest = np.full(len(trace.mode.sections) + 1, -1)
-        np.maximum.at(latest, section[down], down)
+        latest = folded(np.maximum, section[down], down, len(trace.mode.sections) + 1, -1)
         behind = self._behind(np.abs(z - trace.path.z_before) > ROUNDING)
         latest[:-1] = np.maximum(latest[:-1], np.where(falls[behind], behind, -1))
         return np.asarray(above & (latest[section] > np.arange(len(trace))))

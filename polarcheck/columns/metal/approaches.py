@@ -12,7 +12,7 @@ from polarcheck.columns.metal.bar import Bar
 from polarcheck.columns.metal.workpiece import ToolMoves, Workpiece
 from polarcheck.columns.path.tool_center import ToolCenter
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Columns, Floats, Mask, Points, Rows, cached_property, column_at
+from polarcheck.foundation.arrays import Columns, Floats, Mask, Points, Rows, cached_property, column_at, folded
 from polarcheck.foundation.states import Motion
 from polarcheck.geometry import polar
 from polarcheck.geometry.tolerances import ROUNDING
@@ -122,8 +122,7 @@ class Approaches(Columns, frozen=True):
     @staticmethod
     def _farthest(distance: Floats, rows: Mask, stretch: Rows) -> Floats:
         """The largest distance [mm] in some rows of each stretch, for each row; -inf without such a row."""
-        farthest = np.full(int(stretch[-1]) + 1, -np.inf)
-        np.fmax.at(farthest, stretch[rows], distance[rows])
+        farthest = folded(np.fmax, stretch[rows], distance[rows], int(stretch[-1]) + 1, -np.inf)
         return np.asarray(farthest[stretch])
 
     @cached_property

@@ -22,6 +22,7 @@ from polarcheck.foundation.arrays import (
     column_at,
     computed,
     different,
+    folded,
     repeated,
 )
 from polarcheck.foundation.time_limit import keep_time
@@ -316,8 +317,7 @@ class Coverage(Columns, frozen=True):
         path = curves_of(moves, loop[moves.row], moves.known & np.isin(loop[moves.row], checked.number[compared]))
         path = path[np.argsort(level[compared][np.searchsorted(checked.number[compared], path.loop)], kind="stable")]
         path = msgspec.structs.replace(path, loop=level[compared][np.searchsorted(checked.number[compared], path.loop)])
-        radius = np.zeros(len(loop_count))
-        np.maximum.at(radius, level, checked.loops.radius)
+        radius = folded(np.maximum, level, checked.loops.radius, len(loop_count), 0.0)
         may_leave = may_leave_strips(*chords(path, float(checked.loops.radius.min()) / 16), radius)
         return [compared[level[compared] == number] for number in np.flatnonzero(may_leave)]
 

@@ -11,7 +11,16 @@ from polarcheck.columns.contour.overcuts import Overcuts
 from polarcheck.columns.metal.bar import Bar
 from polarcheck.columns.metal.finished import Finished
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Columns, Floats, Mask, cached_property, column_at, different, side_by_side
+from polarcheck.foundation.arrays import (
+    Columns,
+    Floats,
+    Mask,
+    cached_property,
+    column_at,
+    different,
+    folded,
+    side_by_side,
+)
 from polarcheck.geometry.tolerances import ROUNDING
 
 if TYPE_CHECKING:
@@ -108,15 +117,13 @@ class EarlierContours(Columns, frozen=True):
         trace = self.trace
         section = trace.mode.section[walls.row]
         count = len(trace.mode.sections)
-        floor = np.full(count, np.inf)
-        np.fmin.at(floor, section, trace.path.z[walls.row])
+        floor = folded(np.fmin, section, trace.path.z[walls.row], count, np.inf)
         at_floor = trace.path.z[walls.row] <= floor[section] + ROUNDING
         walls, section = walls[at_floor], section[at_floor]
         numbers, first = np.unique(section, return_index=True)
         if not 1 < len(numbers) <= _MOST_SECTIONS:
             return set()
-        reach = np.zeros(count)
-        np.fmax.at(reach, section, np.abs(walls.end))
+        reach = folded(np.fmax, section, np.abs(walls.end), count, 0.0)
         row = walls.row[first]
         turns = np.cumsum(self.bar.tools.turns)
         face = np.stack(
@@ -231,7 +238,6 @@ class EarlierContours(Columns, frozen=True):
         """The least loss along a whole block [mm] of a contour for which metal is left elsewhere."""
         element = later.samples.element
         is_end = (np.diff(element, prepend=-1) != 0) | (np.diff(element, append=-1) != 0)
-        least = np.full(len(later.outline), np.inf)
-        np.minimum.at(least, element[~is_end], gone[~is_end])
+        least = folded(np.minimum, element[~is_end], gone[~is_end], len(later.outline), np.inf)
         least[later.outline.length < _SHORT] = 0.0
         return float(np.max(least, initial=0.0, where=np.isfinite(least)))

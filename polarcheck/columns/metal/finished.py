@@ -9,7 +9,7 @@ import numpy as np
 
 from polarcheck.columns.contour.overcuts import Overcuts, level_of
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Columns, Mask, Rows, cached_property
+from polarcheck.foundation.arrays import Columns, Mask, Rows, cached_property, folded
 from polarcheck.geometry.tolerances import CORNER, ROUNDING
 
 #: Decimals of points of the same wall [mm].
@@ -170,8 +170,7 @@ class Finished(Columns, frozen=True):
         # Levels in the order in which the program comes to them.
         _, first, level = np.unique(level, return_index=True, return_inverse=True)
         rank = np.argsort(np.argsort(first))[level]
-        radius = np.zeros(len(first))
-        np.maximum.at(radius, rank, np.nan_to_num(np.abs(trace.compensation.radius[walls.row])))
+        radius = folded(np.maximum, rank, np.nan_to_num(np.abs(trace.compensation.radius[walls.row])), len(first), 0.0)
         begins = np.flatnonzero(np.diff(walls.loop, prepend=-1))
         order = np.argsort(rank[begins], kind="stable")
         loops, groups = walls.loop[begins][order], rank[begins][order]
@@ -226,6 +225,5 @@ class Finished(Columns, frozen=True):
         middle = walls.points(np.arange(len(walls)), np.full(len(walls), 0.5)).round(_SAME_WALL)
         _, wall = np.unique(np.column_stack([ends, middle]), axis=0, return_inverse=True)
         wall = wall.ravel()
-        cut_to = np.full(int(wall.max()) + 1, np.inf)
-        np.minimum.at(cut_to, wall, highest)
+        cut_to = folded(np.minimum, wall, highest, int(wall.max()) + 1, np.inf)
         return float(np.max(cut_to[wall[np.isin(walls.row, outline.row)]], initial=bottom)), bottom

@@ -23,7 +23,17 @@ from polarcheck.columns.words.comment_reader import (
 )
 from polarcheck.columns.words.comments import Comments, named_tool
 from polarcheck.columns.words.stock_comments import StockComments
-from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, cached_property, column_at, different, is_among
+from polarcheck.foundation.arrays import (
+    Columns,
+    Floats,
+    Mask,
+    Rows,
+    cached_property,
+    column_at,
+    different,
+    folded,
+    is_among,
+)
 from polarcheck.foundation.states import Motion
 from polarcheck.geometry.shapes.shape import POLYGONS
 
@@ -329,8 +339,7 @@ class PartComments(Columns, frozen=True):
         # Where the tool does not come from above Z0 the face is unknown.
         if not len(chosen) or np.isnan(z[chosen]).any() or not (top > 0).all():
             return
-        bottom = np.full(len(self.trace.mode.sections), np.inf)
-        np.minimum.at(bottom, section[chosen], z[chosen])
+        bottom = folded(np.minimum, section[chosen], z[chosen], len(self.trace.mode.sections), np.inf)
         bottoms = bottom[np.isfinite(bottom)]
         if bottoms.min() >= 0 or _is_depth(depth, np.subtract.outer(self._faces(~of_comment), bottoms)).any():
             return

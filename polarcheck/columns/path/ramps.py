@@ -6,7 +6,7 @@ import numpy as np
 
 from polarcheck.columns.path.tool_center import ToolCenter
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, cached_property, column_at
+from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, cached_property, column_at, folded
 from polarcheck.foundation.states import Side
 from polarcheck.geometry.tolerances import ROUNDING
 
@@ -114,8 +114,7 @@ class Ramps(Columns, frozen=True):
         tight = np.flatnonzero(self.tool_center.inside_arc_too_small & (self.loop >= 0))
         if not len(tight):
             return self.trace.blocks.nowhere
-        largest = np.full(int(self.loop.max(initial=0)) + 1, np.nan)
-        np.fmin.at(largest, self.loop[tight], self.arc_radius[tight])
+        largest = folded(np.fmin, self.loop[tight], self.arc_radius[tight], int(self.loop.max(initial=0)) + 1, np.nan)
         return np.asarray((self.loop >= 0) & (self.trace.path.length >= largest[self.loop]))
 
     @cached_property

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from polarcheck.foundation.arrays import Floats, Mask, Points
+from polarcheck.foundation.arrays import Floats, Mask, Points, folded
 from polarcheck.geometry.comparison.measured_path import MeasuredPath
 
 #: Directions from the center in which distances are compared; points sampled along a path.
@@ -58,8 +58,7 @@ def _distances(path: MeasuredPath, center: complex, farthest: float) -> tuple[Fl
         points = np.concatenate([points, _near(path, center, farthest)])
     spoke = points - center
     direction = np.round(np.angle(spoke) / (2 * np.pi / _DIRECTIONS)).astype(np.int64) % _DIRECTIONS
-    nearest = np.full(_DIRECTIONS, np.inf)
-    np.minimum.at(nearest, direction, np.abs(spoke))
+    nearest = folded(np.minimum, direction, np.abs(spoke), _DIRECTIONS, np.inf)
     seen = np.isfinite(nearest)
     measured = np.flatnonzero(seen)
     nearest = np.interp(np.arange(_DIRECTIONS), measured, nearest[measured], period=_DIRECTIONS)

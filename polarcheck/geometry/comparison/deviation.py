@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, column_at, runs
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, column_at, folded, runs
 from polarcheck.geometry.comparison.measured_path import MeasuredPath, path_of_outline
 from polarcheck.geometry.comparison.rounds import Rounds, rounds_of
 from polarcheck.geometry.outline import Outline
@@ -187,9 +187,8 @@ def _compared(
     about_axis = part.about_axis[part.way.of[which]]
     beyond = (size > turned + _ON_CIRCLE) & ~(about_axis & rounds.milled[nearest])
     if beyond.any():
-        run = np.cumsum(np.diff(beyond, prepend=False) | np.diff(about_axis, prepend=False))
-        excess = np.zeros(run[-1] + 1)
-        np.maximum.at(excess, run, size - turned)
+        run: Rows = np.cumsum(np.diff(beyond, prepend=False) | np.diff(about_axis, prepend=False))
+        excess = folded(np.maximum, run, size - turned, run[-1] + 1, 0.0)
         in_air = beyond & (excess[run] > np.where(about_axis, tolerance, _IN_AIR))
         along_round = np.flatnonzero(in_air & about_axis & compared)
         outside = int(part.way.of[which[along_round[0]]]) if len(along_round) else -1

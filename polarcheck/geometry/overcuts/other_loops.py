@@ -12,7 +12,7 @@ import msgspec
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 
-from polarcheck.foundation.arrays import Floats, Mask, Rows, column_at
+from polarcheck.foundation.arrays import Floats, Mask, Rows, column_at, folded
 from polarcheck.geometry.overcuts.cuts import Cuts, assign_walls, cuts_into, endless, shortened
 from polarcheck.geometry.polygons import areas
 from polarcheck.geometry.polygons.faces import lines_of
@@ -36,8 +36,7 @@ def cuts_into_others(contour: Contours, level: Rows, path: Curves, radius: Float
     index = np.minimum(np.searchsorted(loops, path.loop), len(loops) - 1)
     chosen = np.flatnonzero(loops[index] == path.loop)
     group_of_move = column_at(len(path), chosen, group[index[chosen]], -1)
-    smallest = np.full(int(group.max()) + 1, np.inf)
-    np.minimum.at(smallest, group_of_move[chosen], radius[chosen])
+    smallest = folded(np.minimum, group_of_move[chosen], radius[chosen], int(group.max()) + 1, np.inf)
     order = np.argsort(group, kind="stable")
     smallest = np.where(np.isfinite(smallest), smallest, 0.0)
     part = finished_parts(msgspec.structs.replace(contour, loop=loops[order], group=group[order], radius=smallest))

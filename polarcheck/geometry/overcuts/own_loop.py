@@ -16,7 +16,7 @@ import msgspec
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, different, first_in_run
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, different, first_in_run, folded
 from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.overcuts.cuts import Cuts, assign_facing_walls, cuts_into
 from polarcheck.geometry.polygons import areas
@@ -71,8 +71,7 @@ def overcuts(
     if not len(chords):
         return Cuts.none(), np.zeros(0, np.int64), None
     loops, group = np.unique(chords.loop, return_inverse=True)
-    smallest = np.full(len(loops), np.inf)
-    np.minimum.at(smallest, group, radius[chords.move])
+    smallest = folded(np.minimum, group, radius[chords.move], len(loops), np.inf)
     part = finished_parts(Contours(contour, left, loops, np.arange(len(loops)), smallest, bar, tolerance))
     in_open = part.open[group] & is_ramp[chords.move]
     ramps = _Ramps.of(contour, air, path, chords[in_open].shifted((part.pitch * group)[in_open]), group[in_open])
@@ -121,8 +120,7 @@ def _left_at_level(
     moves = cuts.move[compared]
     chords = segments(path[moves], tolerance)
     group = group[compared][chords.move]
-    smallest = np.full(len(levels.polygon), np.inf)
-    np.minimum.at(smallest, group, radius[moves[chords.move]])
+    smallest = folded(np.minimum, group, radius[moves[chords.move]], len(levels.polygon), np.inf)
     chords = Segments(chords.start, chords.end, moves[chords.move], chords.loop)
     remaining = cuts_into(levels, levels.open, chords, group, smallest, tolerance, may_be_far=False).worst()
     before = cuts.depth[np.searchsorted(cuts.move, remaining.move)]

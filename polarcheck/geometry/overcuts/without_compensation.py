@@ -12,7 +12,7 @@ import msgspec
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 
-from polarcheck.foundation.arrays import Floats, Mask, Rows, different, mask_at, ranges
+from polarcheck.foundation.arrays import Floats, Mask, Rows, different, folded, mask_at, ranges
 from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.overcuts.cuts import Cuts, assign_walls, cuts_into, endless, shortened
 from polarcheck.geometry.overcuts.uncompensated_moves import Bare, FlatLoops
@@ -50,8 +50,7 @@ def cuts_into_part(contour: Contours, loops: FlatLoops, bare: Bare) -> tuple[Cut
         return Cuts.none(), none
     move, group = _pairs(groups, bare)
     chords, group = _chords(bare, move, group, contour.tolerance)
-    radius = np.zeros(len(groups.top))
-    np.maximum.at(radius, group, bare.radius[chords.move])
+    radius = folded(np.maximum, group, bare.radius[chords.move], len(groups.top), 0.0)
     near = _comes_near(contour, loops, groups, chords, group, radius)
     near_groups = different(group[near])
     if not len(near_groups):
@@ -101,8 +100,8 @@ def _groups(curves: Curves, loops: FlatLoops, bare: Bare) -> _Groups:
 
     A contour that is repeated higher up adds no boundary. Depths with the same loops make one group.
     """
-    lowest = np.full(int(max(loops.section.max(), bare.curves.loop.max())) + 1, np.inf)
-    np.minimum.at(lowest, bare.curves.loop, bare.z)
+    count = int(max(loops.section.max(), bare.curves.loop.max())) + 1
+    lowest = folded(np.minimum, bare.curves.loop, bare.z, count, np.inf)
     is_reached = np.isfinite(lowest[loops.section])
     order = np.flatnonzero(is_reached)[np.lexsort((loops.z[is_reached], loops.section[is_reached]))]
     is_first = _first_of_equal(curves, loops.section[order], loops.loop[order])

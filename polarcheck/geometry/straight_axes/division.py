@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from polarcheck.foundation.arrays import Floats, Points, Rows, Table, ranges
+from polarcheck.foundation.arrays import Floats, Points, Rows, Table, folded, ranges
 from polarcheck.foundation.errors import TooHardError
 from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.plane import angle_between, cross, quiet
@@ -76,10 +76,8 @@ def _divided(spans: Spans, chord_error: Floats, largest_turn: float, most: int) 
         if not count.sum() <= most:
             raise TooHardError(f"more than {most} blocks: use a larger chord error")
         pieces = _placed(spans, shares, need, count.astype(np.int64))
-        error = np.zeros(len(spans))
-        np.maximum.at(error, pieces.span, np.max(deviations(spans, pieces), axis=1, initial=0.0))
-        turn = np.zeros(len(spans))
-        np.maximum.at(turn, pieces.span, np.abs(pieces.turn))
+        error = folded(np.maximum, pieces.span, np.max(deviations(spans, pieces), axis=1, initial=0.0), len(spans), 0.0)
+        turn = folded(np.maximum, pieces.span, np.abs(pieces.turn), len(spans), 0.0)
         more = np.maximum(np.sqrt(error / chord_error), turn / (largest_turn * (1 + 1e-9)))
         if not np.any(more > 1):
             return pieces

@@ -10,7 +10,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck.foundation.arrays import Mask, Rows, different, is_among, mask_at, stretch
+from polarcheck.foundation.arrays import Mask, Rows, different, folded, is_among, mask_at, stretch
 from polarcheck.program.execution.arithmetic import FromVacant, Unknown
 from polarcheck.program.execution.run import Assigned, FlowFault, Remark, Run, ValueSet, is_code
 from polarcheck.program.execution.statement import Statement, Word
@@ -245,8 +245,7 @@ def _kept(words: Words) -> Mask:
     slashes = np.flatnonzero(words.address == ord("/"))
     kept = np.ones(len(words), bool)
     if len(slashes):
-        first = np.full(int(words.block[-1]) + 1, np.iinfo(np.int64).max)
-        np.minimum.at(first, words.block[slashes], slashes)
+        first = folded(np.minimum, words.block[slashes], slashes, int(words.block[-1]) + 1, np.iinfo(np.int64).max)
         kept = np.arange(len(words)) < first[words.block]
     return kept
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from polarcheck.columns.contour.overcuts import level_of_rows
 from polarcheck.columns.filling import last_row
-from polarcheck.foundation.arrays import Floats, Mask, Rows
+from polarcheck.foundation.arrays import Floats, Mask, Rows, folded
 from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.segments import Curves
 from polarcheck.geometry.shapes.shape import Shape
@@ -97,8 +97,7 @@ def above_the_face(trace: Trace) -> Mask:
     the face is unknown, and there are no such rows.
     """
     inside = np.flatnonzero(trace.mode.section >= 0)
-    deepest = np.full(len(trace.mode.sections), np.inf)
-    np.fmin.at(deepest, trace.mode.section[inside], trace.path.z[inside])
+    deepest = folded(np.fmin, trace.mode.section[inside], trace.path.z[inside], len(trace.mode.sections), np.inf)
     above = np.zeros(len(trace), bool)
     section, z = trace.mode.section[inside], trace.path.z[inside]
     moved = last_row(trace.path.moves_z, trace.mode.enters)[inside]
