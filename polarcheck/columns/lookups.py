@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, TypeVar
+from typing import TypeVar
 
 from polarcheck.foundation.arrays import Columns
 
@@ -14,8 +14,7 @@ class Lookups(Columns, frozen=True):
     """A table with columns that take an argument: each is computed once per argument."""
 
     def _column(self, name: str, make: Callable[[], Column]) -> Column:
-        columns: dict[str, Any] = self.__dict__
-        if name not in columns:
-            columns[name] = make()
-        column: Column = columns[name]
+        if name not in self.__dict__:
+            self.__dict__[name] = make()
+        column: Column = self.__dict__[name]
         return column

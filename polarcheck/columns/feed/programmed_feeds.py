@@ -243,10 +243,7 @@ class Feeds(Columns, frozen=True):
 
         The acceleration grows with the square of F. inf where the profile has no limit, NaN unknown.
         """
-        limit = self.trace.machine.limits.c_acceleration
-        if np.isnan(limit):
-            return repeated(np.float64(np.inf), len(self.trace))
-        return self._feed_within(self.tool_center.c_acceleration, limit)
+        return self._feed_within("c_acceleration")
 
     @cached_property
     def is_limited_in_x_acceleration(self) -> Mask:
@@ -256,12 +253,12 @@ class Feeds(Columns, frozen=True):
     @cached_property
     def allowed_by_x_acceleration(self) -> Floats:
         """The same of the acceleration of X [mm/min]."""
-        limit = self.trace.machine.limits.x_acceleration
-        if np.isnan(limit):
-            return repeated(np.float64(np.inf), len(self.trace))
-        return self._feed_within(self.tool_center.x_acceleration, limit)
+        return self._feed_within("x_acceleration")
 
-    def _feed_within(self, needed: Floats, limit: float) -> Floats:
-        trace = self.trace
+    def _feed_within(self, name: str) -> Floats:
+        trace, limit = self.trace, getattr(self.trace.machine.limits, name)
+        if np.isnan(limit):
+            return repeated(np.float64(np.inf), len(trace))
+        needed = getattr(self.tool_center, name)
         share = np.divide(limit, needed, out=np.ones(len(trace)), where=~(needed <= limit))
         return np.asarray(trace.feedrate.feed * np.sqrt(share))

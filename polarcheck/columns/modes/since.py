@@ -82,6 +82,11 @@ class Since(Columns, frozen=True):
     def _last(self, sets: Mask) -> Rows:
         return np.cumsum(sets | self.trace.blocks.starts)
 
+    def _code(self, *keys: str) -> Rows:
+        """From one M code of these lists to the next."""
+        codes = chain.from_iterable(getattr(self.trace.machine.m_codes, key) for key in keys)
+        return self._last(self.trace.blocks.codes(*codes))
+
     @cached_property
     def tool_call(self) -> Rows:
         """From one call of a tool offset to the next: T, and D where tools have edges."""
@@ -123,19 +128,14 @@ class Since(Columns, frozen=True):
     @cached_property
     def spindle_code(self) -> Rows:
         """From one M code of a spindle to the next."""
-        codes = self.trace.machine.m_codes
-        of_both = (codes.spindle_on, codes.spindle_off, codes.sub_spindle_on, codes.sub_spindle_off)
-        return self._last(self.trace.blocks.codes(*chain.from_iterable(of_both)))
+        return self._code("spindle_on", "spindle_off", "sub_spindle_on", "sub_spindle_off")
 
     @cached_property
     def c_axis_code(self) -> Rows:
         """From one M code of the C axis to the next."""
-        codes = self.trace.machine.m_codes
-        of_both = (codes.c_axis_on, codes.c_axis_off, codes.sub_c_axis_on, codes.sub_c_axis_off)
-        return self._last(self.trace.blocks.codes(*chain.from_iterable(of_both)))
+        return self._code("c_axis_on", "c_axis_off", "sub_c_axis_on", "sub_c_axis_off")
 
     @cached_property
     def live_tool_code(self) -> Rows:
         """From one M code of the live tool to the next."""
-        codes = self.trace.machine.m_codes
-        return self._last(self.trace.blocks.codes(*codes.live_tool_on, *codes.live_tool_off))
+        return self._code("live_tool_on", "live_tool_off")

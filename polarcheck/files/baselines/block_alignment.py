@@ -83,7 +83,7 @@ def _compared(old: Sequence[int], new: Sequence[int]) -> Iterator[_Pair]:
     for edits in range(min(len(old) + len(new), _MOST_EDITS) + 1):
         steps.append(furthest.copy())
         for diagonal in range(-edits, edits + 1, 2):
-            position = _begin(furthest, diagonal, edits)
+            position, _ = _begin(furthest, diagonal, edits)
             while position < len(old) and position - diagonal < len(new) and old[position] == new[position - diagonal]:
                 position += 1
             furthest[diagonal] = position
@@ -92,18 +92,17 @@ def _compared(old: Sequence[int], new: Sequence[int]) -> Iterator[_Pair]:
                 return
 
 
-def _begin(furthest: dict[int, int], diagonal: int, edits: int) -> int:
-    """Return where a path enters a diagonal, in `old`: from the neighbour that has come further."""
+def _begin(furthest: dict[int, int], diagonal: int, edits: int) -> tuple[int, bool]:
+    """Return where a path enters a diagonal, in `old`, from the neighbour that has come further; whether one is added."""
     is_added = diagonal == -edits or (diagonal != edits and furthest[diagonal - 1] < furthest[diagonal + 1])
-    return furthest[diagonal + 1] if is_added else furthest[diagonal - 1] + 1
+    return furthest[diagonal + 1] if is_added else furthest[diagonal - 1] + 1, is_added
 
 
 def _traced(steps: Sequence[dict[int, int]], position: int, new_at: int) -> Iterator[_Pair]:
     for edits, furthest in zip(range(len(steps) - 1, -1, -1), reversed(steps), strict=True):
         diagonal = position - new_at
-        begin = _begin(furthest, diagonal, edits)
+        begin, is_added = _begin(furthest, diagonal, edits)
         while position > begin and new_at > 0:
             position, new_at = position - 1, new_at - 1
             yield position, new_at
-        is_added = diagonal == -edits or (diagonal != edits and furthest[diagonal - 1] < furthest[diagonal + 1])
         position, new_at = (begin, new_at - 1) if is_added else (begin - 1, new_at)

@@ -46,16 +46,17 @@ class Vectors(msgspec.Struct, frozen=True):
     @property
     def first(self) -> Points:
         """Where the move before ends."""
-        result: Points = self.point[AFTER].copy()
-        for slot in (ACROSS, CORNER, BEFORE):
-            np.copyto(result, self.point[slot], where=self.used[slot])
-        return result
+        return self._last_used(AFTER, ACROSS, CORNER, BEFORE)
 
     @property
     def last(self) -> Points:
         """Where the next move begins."""
-        result: Points = self.point[BEFORE].copy()
-        for slot in (CORNER, ACROSS, AFTER):
+        return self._last_used(BEFORE, CORNER, ACROSS, AFTER)
+
+    def _last_used(self, otherwise: int, *slots: int) -> Points:
+        """Per corner the point of the last of these slots that is used; that of another one without any."""
+        result: Points = self.point[otherwise].copy()
+        for slot in slots:
             np.copyto(result, self.point[slot], where=self.used[slot])
         return result
 

@@ -7,7 +7,7 @@ What a key means stands in the docstring of its class and, in the same words, at
 import math
 import re
 from collections.abc import Callable
-from typing import Annotated, Any, Literal, TypeAlias, TypeVar
+from typing import Annotated, Literal, TypeAlias, TypeVar
 
 import msgspec
 
@@ -462,10 +462,9 @@ class Machine(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
 
     def cached(self, name: str, make: Callable[[], Value]) -> Value:
         """Return what is computed from the keys, once for each machine: nobody changes these."""
-        cache: dict[str, Any] = self.__dict__
-        if name not in cache:
-            cache[name] = make()
-        value: Value = cache[name]
+        if name not in self.__dict__:
+            self.__dict__[name] = make()
+        value: Value = self.__dict__[name]
         return value
 
 

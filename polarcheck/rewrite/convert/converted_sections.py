@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
 from polarcheck.foundation.arrays import side_by_side
+from polarcheck.foundation.errors import counted
 from polarcheck.foundation.states import STATES, Motion
 from polarcheck.program.machines.machine import Machine
 from polarcheck.rewrite.convert.axis_words import Translated
@@ -264,16 +265,12 @@ class _Writer:
     def _notes(self) -> list[str]:
         notes = []
         if self.new.rapid_as_line:
-            feed = f"F{self.target.writing.rapid_feed:g} mm/min"
-            notes.append(f"{_count(self.rapid_rows, 'move')} in rapid traverse in the mode: a line with {feed} there")
+            moves, feed = counted(len(self.rapid_rows), "move"), f"F{self.target.writing.rapid_feed:g} mm/min"
+            notes.append(f"{moves} in rapid traverse in the mode: a line with {feed} there")
         if self.divided_rows:
-            notes.append(f"{_count(self.divided_rows, 'arc')} divided, as the machine takes them")
+            notes.append(f"{counted(len(self.divided_rows), 'arc')} divided, as the machine takes them")
         return notes
 
 
 def _without_empty(*blocks: NewBlock) -> list[NewBlock]:
     return [block for block in blocks if block.words or block.comment]
-
-
-def _count(rows: Collection[int], name: str) -> str:
-    return f"{len(rows)} {name}{'s' * (len(rows) != 1)}"
