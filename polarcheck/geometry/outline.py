@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, runs, side_by_side
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, column_at, runs, side_by_side
 from polarcheck.foundation.states import Motion
 from polarcheck.geometry.plane_path import PlanePath
 from polarcheck.geometry.segments import Curves
@@ -81,9 +81,8 @@ def _linked(start: Points, end: Points) -> Rows:
     meets &= (meets.sum(axis=0) == 1) & (meets.sum(axis=1) == 1)[:, None]
     if not meets.any():
         return order
-    after = np.full(len(first), -1)
     before, following = np.nonzero(meets)
-    after[is_open[before]] = is_open[following]
+    after = column_at(len(first), is_open[before], is_open[following], -1)
     chains: dict[int, None] = {}
     begins = [*np.setdiff1d(np.arange(len(first)), after).tolist(), *range(len(first))]
     for chain in begins:

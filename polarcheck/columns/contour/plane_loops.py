@@ -110,15 +110,14 @@ def loops_of(trace: Trace) -> list[PlaneLoop]:
     """The loops that may be regular, each contour once, in the order of the program."""
     if not len(trace.mode.sections):
         return []
-    motion, compensation = trace.axes.motion, trace.compensation
-    at_feed = (motion == Motion.LINE) | (motion == Motion.CW) | (motion == Motion.CCW)
+    at_feed, compensation = trace.axes.at_feed, trace.compensation
     ramp = compensation.starts_up | compensation.cancels
     deeper = trace.path.moves_z & ~trace.path.travels
     begins = ramp | trace.mode.enters | deeper | (trace.path.travels & ~at_feed)
     rows = np.flatnonzero(trace.path.on_plane & at_feed & ~ramp & ~np.isnan(trace.path.end + trace.path.start))
     if not len(rows):
         return []
-    stretch = np.cumsum(begins)[rows]
+    stretch = np.cumsum(begins, dtype=np.int64)[rows]
     first = np.flatnonzero(np.diff(stretch, prepend=-1))
     count = np.diff(first, append=len(rows))
     fits = (count >= _FEWEST) & (count <= _MOST)

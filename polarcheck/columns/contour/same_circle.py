@@ -60,7 +60,6 @@ class SameCircle(Columns, frozen=True):
         """Per move: an arc that its section runs the other way, too, as a slot that is milled to and fro."""
         passes = self.passes
         section = self.trace.mode.section[passes.row]
-        both = np.zeros(len(passes.row), bool)
         arcs = np.flatnonzero(passes.is_arc & ~np.isnan(passes.center))
         ends = np.stack([passes.start[arcs], passes.end[arcs]], axis=1)
         is_back = passes.motion[arcs] == Motion.CW
@@ -72,8 +71,7 @@ class SameCircle(Columns, frozen=True):
         number = column_at(len(arcs), order[1:], np.cumsum(np.any(np.diff(keys[order], axis=0) != 0, axis=1)), 0)
         count = int(number.max(initial=-1)) + 1
         runs = [np.bincount(number[is_back == back], minlength=count) > 0 for back in (False, True)]
-        both[arcs] = (runs[0] & runs[1])[number]
-        return both
+        return column_at(len(passes.row), arcs, (runs[0] & runs[1])[number], False)
 
     @cached_property
     def leaves_circle(self) -> IntendedArcs:

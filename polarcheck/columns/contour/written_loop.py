@@ -77,8 +77,7 @@ class WrittenLoop(NamedTuple):
 
 def written_loops(trace: Trace, sections: Sequence[int]) -> Iterator[WrittenLoop]:
     """The paths of these sections, each block of the file once, in the order of the program."""
-    motion, compensation = trace.axes.motion, trace.compensation
-    at_feed = (motion == Motion.LINE) | (motion == Motion.CW) | (motion == Motion.CCW)
+    at_feed, compensation = trace.axes.at_feed, trace.compensation
     ramp = compensation.starts_up | compensation.cancels
     travels = trace.path.travels
     lifts = trace.path.moves_z & ~travels & ~compensation.compensates

@@ -32,9 +32,7 @@ from polarcheck.foundation.arrays import (
     column_at,
     different,
     folded,
-    is_among,
 )
-from polarcheck.foundation.states import Motion
 from polarcheck.geometry.shapes.shape import POLYGONS
 
 if TYPE_CHECKING:
@@ -349,8 +347,7 @@ class PartComments(Columns, frozen=True):
     def _faces(self, rows: Mask) -> Floats:
         """Every Z to which these rows cut, and Z0: a depth may be meant from any of these faces."""
         trace = self.trace
-        at_feed = is_among(trace.axes.motion, (Motion.LINE, Motion.CW, Motion.CCW))
-        ends = np.append(trace.path.z[rows & at_feed], trace.path.z_of_cycles[rows])
+        ends = np.append(trace.path.z[rows & trace.axes.at_feed], trace.path.z_of_cycles[rows])
         return different(np.append(np.nan_to_num(ends), 0.0))
 
     # ---- bars ----

@@ -11,7 +11,7 @@ import numpy as np
 from polarcheck.columns.filling import last_row
 from polarcheck.columns.metal.workpiece import Workpiece
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Columns, Mask, Points, Rows, cached_property, is_among
+from polarcheck.foundation.arrays import Columns, Mask, Points, Rows, cached_property
 from polarcheck.foundation.states import Motion, Side
 from polarcheck.geometry import polar
 from polarcheck.geometry.tolerances import ROUNDING
@@ -154,7 +154,7 @@ class Strokes(Columns, frozen=True):
     def _faster_than_cut(self) -> dict[int, Rows]:
         """Strokes from above the face into the known bar at several times the F of the cut behind them."""
         trace = self.trace
-        cuts = np.flatnonzero(trace.path.travels & is_among(trace.axes.motion, (Motion.LINE, Motion.CW, Motion.CCW)))
+        cuts = np.flatnonzero(trace.path.travels & trace.axes.at_feed)
         cuts = np.append(cuts, -1)
         following = cuts[np.searchsorted(cuts[:-1], self.row)]
         feed = trace.feedrate.feed

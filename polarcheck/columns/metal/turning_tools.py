@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, Table, cached_property, is_among, mask_at
+from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, Table, cached_property, mask_at
 from polarcheck.foundation.states import Motion
 from polarcheck.geometry.tolerances import ROUNDING
 
@@ -82,8 +82,7 @@ class TurningTools(Columns, frozen=True):
     @cached_property
     def _feeds(self) -> Mask:
         """Rows in which turning tools move X or Z at feed."""
-        at_feed = is_among(self.trace.axes.motion, (Motion.LINE, Motion.CW, Motion.CCW))
-        return np.asarray(self.turns & at_feed & self.trace.axes.moves)
+        return np.asarray(self.turns & self.trace.axes.at_feed & self.trace.axes.moves)
 
     @cached_property
     def moving_rows(self) -> Rows:

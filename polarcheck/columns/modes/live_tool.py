@@ -27,7 +27,7 @@ def speed(trace: Trace) -> Floats:
     values = np.where(takes & is_speed, trace.blocks.word("S"), np.nan)
     for name in trace.machine.live_tool_speeds:
         values = np.where(trace.blocks.has(name), trace.blocks.word(name), values)
-    return fill_down(values, takes | _named(trace) | trace.blocks.starts, np.nan)
+    return fill_down(values, takes | trace.blocks.has(*trace.machine.live_tool_speeds) | trace.blocks.starts, np.nan)
 
 
 def exceeds_highest_speed(trace: Trace) -> Mask:
@@ -36,7 +36,7 @@ def exceeds_highest_speed(trace: Trace) -> Mask:
 
     Where the profile names no codes of the live tool, an S is for it if a section cuts with it.
     """
-    written = _takes(trace) | _named(trace)
+    written = _takes(trace) | trace.blocks.has(*trace.machine.live_tool_speeds)
     above = written & (speed(trace) > trace.machine.limits.live_tool_speed * (1 + SHARE))
     if trace.machine.m_codes.live_tool_on:
         return above
@@ -47,14 +47,6 @@ def exceeds_highest_speed(trace: Trace) -> Mask:
 
 def _takes(trace: Trace) -> Mask:
     return trace.blocks.has("S") & ~trace.modal.sets_coordinates & ~trace.blocks.listed("dwell")
-
-
-def _named(trace: Trace) -> Mask:
-    """Rows with a word for the speed of the live tool alone."""
-    named = np.zeros(len(trace), bool)
-    for name in trace.machine.live_tool_speeds:
-        named |= trace.blocks.has(name)
-    return named
 
 
 def _next_starts_live_tool(trace: Trace) -> Mask:

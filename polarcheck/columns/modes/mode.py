@@ -35,7 +35,6 @@ class PolarMode(Columns, frozen=True):
     def sections(self) -> Sections:
         """The polar sections."""
         m_codes = self.machine.m_codes
-        cutting = is_among(self.axes.motion, (Motion.LINE, Motion.CW, Motion.CCW))
         polar = self.machine.polar
         planes = {code for key in STATES["plane"] for code in self.machine.codes(key)}
         # Where G0 can stand in the mode, one with the second axis does.
@@ -54,8 +53,8 @@ class PolarMode(Columns, frozen=True):
             tools_in_mode=changes_tool & self._takes_tools,
             stops=self.blocks.codes(*m_codes.optional_stop),
             rapid=self.blocks.listed("rapid"),
-            cuts=cutting & self.axes.programs_virtual_axis | is_circle,
-            moves=(cutting | in_rapid) & self.axes.moves_plane,
+            cuts=self.axes.at_feed & self.axes.programs_virtual_axis | is_circle,
+            moves=(self.axes.at_feed | in_rapid) & self.axes.moves_plane,
             returns=self._returns | self.blocks.is_unknown("G"),
             broken_off=np.zeros(len(self.run), bool) if self.run.broken_off is None else self.run.broken_off,
             rapid_stands=rapid_stands,
@@ -141,8 +140,7 @@ class PolarMode(Columns, frozen=True):
     def comes_before_open_end(self) -> Mask:
         """Rows above a contour with the virtual axis that no switch begins, and a switch ends."""
         ends = self._comes_before(np.flatnonzero(self.axes.ends_mode & (self.section < 0)))
-        cutting = is_among(self.axes.motion, (Motion.LINE, Motion.CW, Motion.CCW))
-        contours = cutting & self.axes.programs_virtual_axis & (self.section < 0)
+        contours = self.axes.at_feed & self.axes.programs_virtual_axis & (self.section < 0)
         return self._comes_before(np.flatnonzero(contours & ends))
 
     def _comes_before(self, rows: Rows) -> Mask:

@@ -11,7 +11,6 @@ import numpy as np
 from polarcheck.columns.filling import happened
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Columns, Mask, Rows, cached_property, is_among, mask_at
-from polarcheck.foundation.states import Motion
 from polarcheck.program.machines import profiles
 from polarcheck.program.machines.axis_table import AXES
 from polarcheck.program.machines.code_lists import is_code
@@ -140,8 +139,8 @@ class OtherMode(Columns, frozen=True):
         begins = self.trace.blocks.mask_of(switch.rows)
         ends = self._ends(switch)
         axes = {axis for profile in switch.known_by for axis in profile.machine.polar.virtual_axes}
-        at_feed = is_among(self.trace.axes.motion, (Motion.LINE, Motion.CW, Motion.CCW))
-        at_feed |= self._has(code for profile in switch.known_by for code in profile.machine.control.motion_codes)
+        codes = (code for profile in switch.known_by for code in profile.machine.control.motion_codes)
+        at_feed = self.trace.axes.at_feed | self._has(codes)
         return begins, at_feed & self.trace.blocks.has(*axes) & self._within(begins, ends), ends
 
     def _ends(self, switch: Switch) -> Mask:

@@ -16,7 +16,6 @@ _MOVES_OF_CONTOUR = 2
 _FARTHEST_C = 1.25
 #: Below these F is no feed per minute but one per revolution: without the live tool, and with it [mm].
 _LEAST_OF_TURNING, _LEAST_OF_LIVE_TOOL = 5.0, 1.0
-_AT_FEED = (Motion.LINE, Motion.CW, Motion.CCW)
 
 
 class Procedure(Columns, frozen=True):
@@ -56,7 +55,7 @@ class Procedure(Columns, frozen=True):
         trace, mode = self.trace, self.trace.machine.polar
         turns = trace.blocks.has(mode.virtual_axis, mode.virtual_axis_incremental) & (trace.mode.section < 0)
         turns &= (trace.path.moves_c | (self._is_arc & trace.blocks.has("J"))) if self._is_rotary else True
-        return np.asarray(turns & is_among(trace.axes.motion, _AT_FEED))
+        return np.asarray(turns & trace.axes.at_feed)
 
     @property
     def _is_arc(self) -> Mask:
@@ -96,7 +95,7 @@ class Procedure(Columns, frozen=True):
         if not self._is_rotary:
             return repeated(np.int64(-1), len(trace))
         plane = turns & ~self._is_arc
-        along_x = is_among(trace.axes.motion, _AT_FEED) & trace.path.moves_x
+        along_x = trace.axes.at_feed & trace.path.moves_x
         turning, moving = (before(_count(mask, stops), trace.blocks.starts, 0) for mask in (plane, along_x))
         first = _first(plane, stops, trace.blocks.starts)
         is_contour = (turning >= _MOVES_OF_CONTOUR) & (moving > 0) & ~self._is_angle(plane, stops)
@@ -158,7 +157,7 @@ class Procedure(Columns, frozen=True):
             return none
         stops = since | self._may_begin | self._leaves_work
         stretch: Rows = np.cumsum(stops)
-        at_feed = is_among(trace.axes.motion, _AT_FEED) & (trace.mode.section < 0)
+        at_feed = trace.axes.at_feed & (trace.mode.section < 0)
         turns, below, sides = (
             np.bincount(stretch[mask], minlength=int(stretch[-1]) + 1)
             for mask in (
@@ -246,9 +245,7 @@ class Procedure(Columns, frozen=True):
             named = trace.blocks.has(name)
             takes, is_own = takes | named, np.where(named, ~(trace.blocks.word(name) == 0), is_own)
         has_speed = fill_down(takes & is_own, takes | trace.blocks.starts, False).astype(bool)
-        ends = (
-            is_among(trace.axes.motion, _AT_FEED) | trace.blocks.codes(*codes.live_tool_off) | trace.blocks.ends_program
-        )
+        ends = trace.axes.at_feed | trace.blocks.codes(*codes.live_tool_off) | trace.blocks.ends_program
         until = np.append(np.flatnonzero(ends), len(trace) - 1)[np.searchsorted(np.flatnonzero(ends), rows)]
         is_whole = (trace.blocks.whole_program | trace.tools.has_called_tool) & trace.blocks.anywhere_in_program(
             trace.mode.enters
@@ -339,7 +336,7 @@ class Procedure(Columns, frozen=True):
         trace = self.trace
         leads = trace.blocks.listed("thread_cutting", "threading_cycle", "feed_is_lead")
         threads = happened(leads, trace.modal.sets("motion") | trace.blocks.starts)
-        at_feed = is_among(trace.axes.motion, _AT_FEED) & (trace.path.moves_x | trace.path.moves_z) & ~self._turns
+        at_feed = trace.axes.at_feed & (trace.path.moves_x | trace.path.moves_z) & ~self._turns
         cycle = (trace.axes.motion == Motion.CYCLE) | (trace.blocks.listed("repetitive_cycle") & trace.blocks.has("F"))
         return np.asarray((trace.mode.section < 0) & (at_feed | cycle) & ~threads)
 

@@ -7,11 +7,9 @@ import numpy as np
 
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Columns, Mask, cached_property, is_among
-from polarcheck.foundation.states import Motion
 from polarcheck.program.machines.axis_table import AXES
 from polarcheck.program.machines.code_tables import code, code_set
 
-_AT_FEED = (Motion.LINE, Motion.CW, Motion.CCW)
 #: Characters of a code such as G121, of which the builder's other one is the number below.
 _DIGITS = 4
 
@@ -84,7 +82,7 @@ class SwitchSlips(Columns, frozen=True):
         following = np.flatnonzero((stops | answers)[row + 1 :]) + row + 1
         end = int(following[0]) if len(following) else len(trace)
         is_answered = end < len(trace) and bool(answers[end])
-        cuts = is_among(trace.axes.motion, _AT_FEED) & trace.axes.programs_virtual_axis & trace.modal.uses_axes
+        cuts = trace.axes.at_feed & trace.axes.programs_virtual_axis & trace.modal.uses_axes
         if not cuts[row + 1 : end].any():
             return []
         answer = end if is_answered and not trace.axes.switches_off[end] else -1

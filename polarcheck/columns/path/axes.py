@@ -409,6 +409,11 @@ class PlaneAxes(Columns, frozen=True):
         return np.where(moving, motion, Motion.NONE).astype(np.int16)
 
     @cached_property
+    def at_feed(self) -> Mask:
+        """A line or an arc at feed is the motion of the row's axis words."""
+        return is_among(self.motion, (Motion.LINE, Motion.CW, Motion.CCW))
+
+    @cached_property
     def moves(self) -> Mask:
         """Moves any axis."""
         return np.asarray(self.motion != Motion.NONE)

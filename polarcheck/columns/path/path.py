@@ -629,13 +629,12 @@ class ProgrammedPath(Columns, frozen=True):
     @cached_property
     def cuts(self) -> Mask:
         """A move on the polar plane at feed."""
-        at_feed = is_among(self.axes.motion, (Motion.LINE, Motion.CW, Motion.CCW))
-        return self.travels & at_feed
+        return self.travels & self.axes.at_feed
 
     @cached_property
     def moves_at_feed(self) -> Mask:
         """A move in the polar mode at feed, that of Z alone included."""
-        return self.mode.in_polar & self.moves & is_among(self.axes.motion, (Motion.LINE, Motion.CW, Motion.CCW))
+        return self.mode.in_polar & self.moves & self.axes.at_feed
 
 
 def _differs(commands: Mask, places: Callable[[], tuple[Floats, Floats]]) -> Mask:

@@ -93,7 +93,7 @@ def _compared(old: Sequence[int], new: Sequence[int]) -> Iterator[_Pair]:
 
 
 def _begin(furthest: dict[int, int], diagonal: int, edits: int) -> tuple[int, bool]:
-    """Return where a path enters a diagonal, in `old`, from the neighbour that has come further; whether one is added."""
+    """Return where a path enters a diagonal, in `old`, from the neighbour that came further; whether one is added."""
     is_added = diagonal == -edits or (diagonal != edits and furthest[diagonal - 1] < furthest[diagonal + 1])
     return furthest[diagonal + 1] if is_added else furthest[diagonal - 1] + 1, is_added
 

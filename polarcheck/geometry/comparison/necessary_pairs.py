@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, mask_at
 from polarcheck.geometry.comparison.polyline import Polyline
 from polarcheck.geometry.tolerances import ROUNDING
 
@@ -36,9 +36,7 @@ def _is_alone(line: Polyline, corner: Rows, other: Polyline, partner: Rows, dist
     elsewhere = (segment != partner[pair]) & (segment != partner[pair] - 1)
     pair, segment = pair[elsewhere], segment[elsewhere]
     apart = distances(other, line.point[corner[pair]], line.z[corner[pair]], segment)
-    result = np.ones(len(corner), bool)
-    result[pair[apart <= distance + ROUNDING]] = False
-    return result
+    return ~mask_at(len(corner), pair[apart <= distance + ROUNDING])
 
 
 def distances(

@@ -194,17 +194,15 @@ def _links(path: Path, row: Rows, on: Mask, method: Method) -> dict[str, Any]:
         """Sum over the rows between each moving row and the next."""
         return np.bincount(gap, values, minlength=len(row))
 
-    has_next = np.zeros(len(row), dtype=np.bool_)
-    has_next[:-1] = path.section[row[1:]] == path.section[row[:-1]]
+    has_next = np.append(path.section[row[1:]] == path.section[row[:-1]], False)[: len(row)]
     # A block without movement counts one, a move of no length two (FANUC 16i-LB B-63664EN p. 170).
     tolerated = in_gap(np.where(path.moves[between], 2, 1)) <= max(method.read_ahead, 3) - 2
     stopped = path.stops_reading[row] | (in_gap(path.stops_reading[between]) > 0)
     cancelled = has_next & (in_gap(off[between]) > 0)
     written = in_gap(writes_side[between]) > 0
     written[:-1] |= writes_side[row[1:]]
-    before_on, left_over = np.zeros_like(has_next), np.zeros_like(has_next)
-    before_on[1:] = (on & has_next & ~cancelled)[:-1]
-    left_over[1:] = (on & has_next & cancelled)[:-1] & (not method.shifts_at_once)
+    before_on = np.append(False, on & has_next & ~cancelled)[:-1]
+    left_over = np.append(False, on & has_next & cancelled & (not method.shifts_at_once))[:-1]
     shifts_at, clears_at = np.full(len(row), -1), np.full(len(row), -1)
     if method.shifts_at_once:
         switched_at = _switched_at(path.section, off)[row]
@@ -233,30 +231,25 @@ def _between(row: Rows, count: int) -> tuple[Rows, Rows]:
 def _switched_at(section: Rows, off: Mask) -> Rows:
     """Per row, the first row of its section since which no row is off."""
     rows = np.arange(len(off))
-    begins = np.zeros(len(off), dtype=np.int64)
-    begins[1:] = np.where(section[1:] != section[:-1], rows[1:], 0)
+    begins = np.append(0, np.where(section[1:] != section[:-1], rows[1:], 0))[: len(off)]
     return np.maximum.accumulate(np.maximum(np.where(off, rows + 1, 0), begins))
 
 
 def _clears_at(section: Rows, off: Mask, row: Rows, on: Mask) -> Rows:
     """Per moving row, the first row without movement after it in which its side goes off; -1 for none."""
-    result = np.full(len(row), -1)
     goes_off = np.flatnonzero(off[1:] & ~off[:-1] & (section[1:] == section[:-1])) + 1
     last = np.searchsorted(row, goes_off, side="right") - 1
     goes_off, last = goes_off[last >= 0], last[last >= 0]
     alone = (row[last] != goes_off) & (section[row[last]] == section[goes_off]) & on[last]
     # Backwards, so that of several G40 the first one stays.
-    result[last[alone][::-1]] = goes_off[alone][::-1]
-    return result
+    return column_at(len(row), last[alone][::-1], goes_off[alone][::-1], -1)
 
 
 def fits(programmed: Programmed, rows: Rows, side: Floats, radius: Floats) -> Mask:
     """Which of these moves leave a path to a tool of this radius [mm] on this side: R inside an arc must be smaller."""
-    result = np.ones(len(rows), dtype=np.bool_)
     arcs = np.flatnonzero(programmed.turning[rows])
     of = rows[arcs]
     center = programmed.center[of]
     arc_radius = np.minimum(np.abs(programmed.start[of] - center), np.abs(programmed.end[of] - center))
     inside = side[arcs] * programmed.turning[of] * radius[arcs]
-    result[arcs] = ~(arc_radius - inside <= ROUNDING) | (radius[arcs] == 0)
-    return result
+    return column_at(len(rows), arcs, ~(arc_radius - inside <= ROUNDING) | (radius[arcs] == 0), True)

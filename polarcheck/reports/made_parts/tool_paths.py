@@ -9,7 +9,7 @@ import numpy as np
 
 from polarcheck.columns.contour.overcuts import level_of_rows
 from polarcheck.columns.filling import last_row
-from polarcheck.foundation.arrays import Floats, Mask, Rows, folded
+from polarcheck.foundation.arrays import Floats, Mask, Rows, column_at, folded
 from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.segments import Curves
 from polarcheck.geometry.shapes.shape import Shape
@@ -98,13 +98,12 @@ def above_the_face(trace: Trace) -> Mask:
     """
     inside = np.flatnonzero(trace.mode.section >= 0)
     deepest = folded(np.fmin, trace.mode.section[inside], trace.path.z[inside], len(trace.mode.sections), np.inf)
-    above = np.zeros(len(trace), bool)
     section, z = trace.mode.section[inside], trace.path.z[inside]
     moved = last_row(trace.path.moves_z, trace.mode.enters)[inside]
     is_lifted = (trace.path.z[moved] > trace.path.z_before[moved]) & (trace.path.z_before[moved] < 0) & (moved >= 0)
     comes_from = trace.path.z[trace.mode.sections.enter[section]]
-    above[inside] = (z > 0) & ((z >= comes_from) | is_lifted) & (deepest[section] <= 0)
-    return above
+    is_above = (z > 0) & ((z >= comes_from) | is_lifted) & (deepest[section] <= 0)
+    return column_at(len(trace), inside, is_above, False)
 
 
 def _levels(frame: Rows, level: Floats, radius: Floats, chosen: Rows) -> Iterator[Rows]:

@@ -9,7 +9,7 @@ import numpy as np
 
 from polarcheck.columns.filling import before
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.states import FeedMode, Motion
+from polarcheck.foundation.states import FeedMode
 from polarcheck.program.machines.machine import Machine
 from polarcheck.rewrite.convert.measures import AxisWord, Measures
 from polarcheck.rewrite.convert.number_text import number_of
@@ -81,7 +81,7 @@ class OfLathe:
         if ours and ours == theirs:
             return {}
         letters = "".join(trace.machine.polar.rotary_words)
-        at_feed = np.isin(trace.axes.motion, (Motion.LINE, Motion.CW, Motion.CCW)) & trace.axes.moves
+        at_feed = trace.axes.at_feed & trace.axes.moves
         other = (trace.modal.state("feed_mode") == FeedMode.INVERSE_TIME) | trace.modal.in_cycle
         moves_c = trace.blocks.has(*letters) & (trace.mode.whole_section < 0) & at_feed & ~other
         rows = np.flatnonzero(moves_c & (trace.path.c_angle != before(trace.path.c_angle, trace.blocks.starts, np.nan)))
