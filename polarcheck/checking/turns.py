@@ -32,7 +32,12 @@ def read_in_turn(engine: Engine, missing: Callable[[Rule], object], read: Callab
     number = {name: number for number, name in enumerate(TABLES)}
     remaining = Counter(name for names in reads.values() for name in names)
     stays = set(made_from("trace"))
-    for reader in sorted(reads, key=lambda reader: max(map(number.__getitem__, reads[reader]), default=-1)):
+    last_table = {reader: max(map(number.__getitem__, names), default=-1) for reader, names in reads.items()}
+    for reader in sorted(reads, key=last_table.__getitem__):
+        if last_table[reader] >= number["tool_center"]:
+            # From here on positions are read, and hardly any word.
+            engine.tables["blocks"].forget("word")
+            engine.tables["lengths"].forget("length")
         if reader in READ:
             read(reader)
         else:

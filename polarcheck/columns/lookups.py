@@ -18,3 +18,8 @@ class Lookups(Columns, frozen=True):
             self.__dict__[name] = make()
         column: Column = self.__dict__[name]
         return column
+
+    def forget(self, kind: str) -> None:
+        """Drop the columns of a kind, as `word` for each address: they are made again when they are asked for."""
+        for name in [name for name in self.__dict__ if name.startswith(f"{kind} ")]:
+            del self.__dict__[name]

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from polarcheck.columns.contour.correction import Correction
-from polarcheck.columns.contour.written_loop import AxisWords, axis_words
+from polarcheck.columns.contour.written_loop import AxisWords, axis_words, directions
 from polarcheck.columns.trace import Trace
 from polarcheck.columns.words.slips import Slip, parts_of, plain_number, slips_of
 from polarcheck.foundation.arrays import Floats, Points, Rows, runs
@@ -42,9 +42,8 @@ def off_the_curve(trace: Trace) -> list[Correction]:
     curves = _curves(trace)
     if not len(curves.row):
         return []
-    half = np.abs(trace.lengths.half_of_last_digit)
     is_own = curves.row >= 0
-    digit = _DIGITS * np.where(is_own, half[curves.row], 0.0)
+    digit = _DIGITS * np.where(is_own, np.abs(trace.lengths.half_of_last_digit(curves.row)), 0.0)
     rough = np.zeros(len(curves.point), np.complex128)
     rough[2:-2] = np.convolve(curves.point, _FOURTH, "valid")
     size = np.abs(rough)
@@ -103,10 +102,13 @@ def _curves(trace: Trace) -> _Curves:
 def _correction(trace: Trace, curves: _Curves, index: int, rough: Points, smooth: float) -> Correction | None:
     """The word that leads to a point, if it is a slip of the pen and the curve is smooth without it."""
     rows = curves.row[index : index + 2]
-    for axis in axis_words(trace, rows[rows >= 0]):
-        shift = -complex(rough[2] / axis.direction).real / _FOURTH[2]
-        residue = rough + _FOURTH * shift * axis.direction
-        if not np.abs(residue).max() <= smooth or axis.is_step.any() or (axis.word[1:] < 0).any():
+    rows = rows[rows >= 0]
+    for number, direction in enumerate(directions(trace, int(rows[-1]))):
+        shift = -complex(rough[2] / direction).real / _FOURTH[2]
+        if not np.abs(rough + _FOURTH * shift * direction).max() <= smooth:
+            continue
+        axis = axis_words(trace, rows)[number]
+        if axis.is_step.any() or (axis.word[1:] < 0).any():
             continue
         numbers = (curves.point / axis.direction).real / float(axis.scale[0])
         value = float(numbers[index]) + shift / float(axis.scale[0])

@@ -201,11 +201,9 @@ class Overcuts:
         return self._walls_of(self.has_walls)
 
     def _walls_of(self, rows_of_cutters: Mask) -> Curves:
-        trace = self.trace
-        programmed = programmed_moves(trace)
-        rows = programmed.row
-        chosen = (self.loop[rows] >= 0) & ~trace.compensation.starts_up[rows] & programmed.known & rows_of_cutters[rows]
-        return curves_of(programmed, self.loop[rows], chosen)
+        is_wall = (self.loop >= 0) & ~self.trace.compensation.starts_up & rows_of_cutters
+        programmed = programmed_moves(self.trace, is_wall)
+        return curves_of(programmed, self.loop[programmed.row], programmed.known)
 
     @cached_property
     def walls_of_unknown_radius(self) -> tuple[Curves, Mask]:
@@ -412,8 +410,8 @@ class Overcuts:
 def curves_of(moves: Moves, loop: Rows, chosen: Mask) -> Curves:
     from polarcheck.geometry.segments import Curves
 
-    row = moves.row[chosen]
-    return Curves(moves.start[chosen], moves.end[chosen], moves.center[chosen], moves.kind[chosen], loop[chosen], row)
+    curves = Curves(*moves.shape, loop, moves.row)
+    return curves if chosen.all() else curves[chosen]
 
 
 def objected(trace: Trace, tool_center: ToolCenter) -> Mask:

@@ -88,7 +88,7 @@ class Passes(Columns, frozen=True):
     @cached_property
     def half_of_last_digit(self) -> Floats:
         """How far the rounding of its words may shift the points of each move [mm]."""
-        return np.asarray(np.abs(self.trace.lengths.half_of_last_digit)[self.row])
+        return np.abs(self.trace.lengths.half_of_last_digit(self.row))
 
     @cached_property
     def compensated(self) -> Mask:

@@ -56,7 +56,7 @@ def _of_section(trace: Trace, rows: Rows) -> Iterator[Correction]:
     written = different(place)
     if not _FEWEST <= len(written) <= _MOST:
         return
-    tolerance = same_place(complex(trace.lengths.half_of_last_digit[rows[0]]))
+    tolerance = same_place(complex(trace.lengths.half_of_last_digit(rows[:1])[0]))
     places = each_once(written, tolerance)
     visits = np.count_nonzero(np.abs(place[:, None] - places) <= tolerance, axis=0)
     if len(places) < _FEWEST or visits.min() != visits.max():
@@ -79,7 +79,7 @@ def _correction(trace: Trace, above: int, row: int, place: complex, places: Poin
     if not len(moves):
         return None
     axes = axis_words(trace, moves)
-    tolerance = same_place(complex(trace.lengths.half_of_last_digit[row]))
+    tolerance = same_place(complex(trace.lengths.half_of_last_digit(np.array([row]))[0]))
     away = [complex((place - trace.path.end[row]) / axis.direction).real for axis in axes]
     odd = [axis for axis, shift in zip(axes, away, strict=True) if abs(shift) > tolerance]
     if len(odd) != 1:

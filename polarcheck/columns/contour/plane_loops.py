@@ -9,7 +9,7 @@ import numpy as np
 
 from polarcheck.columns.path.lengths import same_place
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, column_at
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, column_at, side_by_side
 from polarcheck.foundation.states import Motion
 from polarcheck.geometry.plane import angle_between, arc_sweep
 from polarcheck.geometry.plane_path import PlanePath
@@ -161,12 +161,12 @@ def _different(trace: Trace, rows: Rows, first: Rows, count: Rows) -> Iterator[P
     """A loop for each of these stretches of the rows, but for those that repeat an earlier one."""
     if not len(first):
         return
-    half = trace.lengths.half_of_last_digit
+    digits = trace.lengths.half_of_last_digit(rows[first])
     travels = np.flatnonzero(trace.path.travels)
     by_radius = trace.lengths.length_of(trace.machine.arcs.radius_word)
     to_center = np.nan_to_num(trace.path.center - trace.path.start)
     work, keys = 0, set[bytes]()
-    for begin, size in zip(first.tolist(), count.tolist(), strict=True):
+    for begin, size, digit in side_by_side(first, count, digits):
         rows_of_loop = rows[begin : begin + size]
         point = np.append(trace.path.start[rows_of_loop[:1]], trace.path.end[rows_of_loop])
         motion = trace.axes.motion[rows_of_loop]
@@ -180,7 +180,6 @@ def _different(trace: Trace, rows: Rows, first: Rows, count: Rows) -> Iterator[P
         if work > _WORK:
             return
         above = int(travels[max(int(np.searchsorted(travels, rows_of_loop[0])) - 1, 0)])
-        digit = complex(half[rows_of_loop[0]])
         yield PlaneLoop(
             np.append(min(above, rows_of_loop[0]), rows_of_loop),
             point,

@@ -99,7 +99,7 @@ def written_loops(trace: Trace, sections: Sequence[int]) -> Iterator[WrittenLoop
 
 def written_loop(trace: Trace, row: Rows) -> WrittenLoop:
     """The path of these rows of one section, the first of them the move before it, -1 for none."""
-    last, own = int(row[-1]), row[1:]
+    own = row[1:]
     kind, arcs = trace.axes.motion[own], trace.machine.arcs
     turns = np.where(kind == Motion.CW, -1, np.where(kind == Motion.CCW, 1, 0)).astype(np.int64)
     codes = [code for key in STATES["motion"] for code in trace.machine.codes(key)]
@@ -113,20 +113,25 @@ def written_loop(trace: Trace, row: Rows) -> WrittenLoop:
         np.nan_to_num(trace.path.center - trace.path.start)[own],
         _last(trace, own, trace.blocks.code_indices(*codes)),
         {address: np.where(turns != 0, words, -1) for address, words in of_arcs.items()},
-        same_place(complex(trace.lengths.half_of_last_digit[last])),
+        same_place(complex(trace.lengths.half_of_last_digit(row[-1:])[0])),
     )
+
+
+def directions(trace: Trace, row: int) -> tuple[complex, complex]:
+    """The directions of the linear and of the virtual axis on the plane in a row."""
+    turn = complex(trace.path.frames.turn[row]) if trace.path.frames is not None else 1 + 0j
+    return turn, 1j * turn
 
 
 def axis_words(trace: Trace, row: Rows) -> tuple[AxisWords, AxisWords]:
     """The words of both axes in these rows of one section; -1 for a row is none."""
     last = int(row[-1])
-    linear = chr(trace.axes.linear_axis[last])
-    turn = complex(trace.path.frames.turn[last]) if trace.path.frames is not None else 1 + 0j
+    linear, direction = chr(trace.axes.linear_axis[last]), directions(trace, last)
     scale = trace.lengths.scale[row]
     of_virtual = 0.5 if trace.machine.polar.virtual_axis_programming == "diameter" else 1.0
     return (
-        _axis(trace, row, (linear, INCREMENTS[linear]), scale * trace.lengths.x_factor[row], turn),
-        _axis(trace, row, trace.axes.virtual_addresses(last), scale * of_virtual, 1j * turn),
+        _axis(trace, row, (linear, INCREMENTS[linear]), scale * trace.lengths.x_factor[row], direction[0]),
+        _axis(trace, row, trace.axes.virtual_addresses(last), scale * of_virtual, direction[1]),
     )
 
 

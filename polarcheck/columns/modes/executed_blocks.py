@@ -45,10 +45,11 @@ class ExecutedBlocks(Lookups, frozen=True):
         return len(self.run)
 
     @cached_property
-    def _by_address(self) -> tuple[Rows, Rows]:
+    def _by_address(self) -> tuple[NDArray[np.int32], Rows]:
         """Word indices grouped by address in order of the rows, and where each address begins."""
         address = self.run.words.address
-        return np.argsort(address, kind="stable"), np.cumsum(np.bincount(address, minlength=256))
+        # Positions in int32: half of a large column, which stays as long as the program is checked.
+        return np.argsort(address, kind="stable").astype(np.int32), np.cumsum(np.bincount(address, minlength=256))
 
     def word_indices(self, *addresses: str) -> Rows:
         """The words of an address, in order, then those of the next; `,R` is an address of its own."""
@@ -58,9 +59,9 @@ class ExecutedBlocks(Lookups, frozen=True):
     def _words_of(self, address: str) -> Rows:
         order, ends = self._by_address
         if not address:  # of a machine that has none for it
-            return order[:0]
+            return np.zeros(0, np.int64)
         number = self.machine.address_number(address)
-        words = order[ends[number - 1] : ends[number]]
+        words = order[ends[number - 1] : ends[number]].astype(np.int64)
         return words[~self.numbers_by_h[self.run.row[words]]] if address == "H" and len(words) else words
 
     @cached_property
@@ -214,18 +215,20 @@ class ExecutedBlocks(Lookups, frozen=True):
             for begin, end in (begins[number : number + 2] for number in codes[present].nonzero()[0].tolist())
         ]
         if not groups:
-            return order[:0]
+            return np.zeros(0, np.int64)
         number = groups[0] if len(groups) == 1 else np.sort(np.concatenate(groups))
         if letter == "G":
             return self.g_words[number]
         return self.m_words[number[~self._with_other_word[number]]]
 
     @cached_property
-    def _by_code(self) -> dict[str, tuple[Rows, NDArray[np.int32], Rows]]:
+    def _by_code(self) -> dict[str, tuple[NDArray[np.int32], NDArray[np.int32], Rows]]:
         """By letter the G or M words grouped by their codes, the codes that there are, and where each begins."""
         groups = {}
         for letter, numbers in (("G", self.g_codes), ("M", self.m_codes)):
-            order = np.argsort(numbers.astype(np.int16), kind="stable")  # of small numbers in linear time
+            order = np.argsort(numbers.astype(np.int16), kind="stable").astype(
+                np.int32
+            )  # of small numbers in linear time
             rising = numbers[order]
             begins = np.flatnonzero(first_in_run(rising))
             groups[letter] = order, rising[begins], np.append(begins, len(order))

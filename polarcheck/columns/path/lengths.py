@@ -156,23 +156,27 @@ class Lengths(Lookups, frozen=True):
         lasting = self.blocks.codes(*control.x_radius_words, *control.x_diameter_words)
         return np.where(happened(both, lasting | self.blocks.starts), 1.0, self.x_factor)
 
-    @cached_property
-    def half_of_last_digit(self) -> Points:
+    def half_of_last_digit(self, rows: Rows) -> Points:
         """
-        Half of the last digit in X, as a radius, and in the virtual axis [mm]; NaN outside of sections.
+        Half of the last digit in X, as a radius, and in the virtual axis, in these rows [mm]; NaN outside of sections.
 
         It is that of the number with the most decimals in the section, since posts leave out zeros at the end. Numbers
         without any are taken as exact to the least increment.
         """
-        x = self._last_digit(self.blocks.word_indices("X", "U")) * self.x_factor
-        virtual = self._last_digit(self.axes.virtual_words)
-        return np.where(self.mode.section >= 0, (x + 1j * virtual) * self.scale / 2, complex("nan+nanj"))
+        section, least = self.mode.section[rows], self.least_increment[rows]
+        x, virtual = (
+            np.where((decimals > 0)[section], np.minimum((10.0**-decimals)[section], _COARSEST * least), least)
+            for decimals in self._decimals
+        )
+        half = (x * self.x_factor[rows] + 1j * virtual) * self.scale[rows] / 2
+        return np.where(section >= 0, half, complex("nan+nanj"))
 
-    def _last_digit(self, words: Rows) -> Floats:
-        """The finest digit of these words in the section of each row."""
+    @cached_property
+    def _decimals(self) -> tuple[Rows, ...]:
+        """Per section, and outside of all, the most decimals of X and of the virtual axis."""
+        return self._most_decimals(self.blocks.word_indices("X", "U")), self._most_decimals(self.axes.virtual_words)
+
+    def _most_decimals(self, words: Rows) -> Rows:
         section = self.mode.section[self.run.row[words]]
-        own = self.run.words.decimals[words]
-        decimals = folded(np.maximum, section, np.where(section >= 0, own, 0), len(self.mode.sections) + 1, 0)
-        least = self.least_increment
-        finest = np.minimum((10.0**-decimals)[self.mode.section], _COARSEST * least)
-        return np.where((decimals > 0)[self.mode.section], finest, least)
+        own = np.where(section >= 0, self.run.words.decimals[words], 0)
+        return folded(np.maximum, section, own, len(self.mode.sections) + 1, 0)

@@ -32,6 +32,9 @@ from polarcheck.geometry.cutter_compensation import offset_path
 from polarcheck.geometry.plane_path import PlanePath
 from polarcheck.geometry.tolerances import ZERO
 
+#: Formulas take so many moves at a time: what they compute on the way is as large as the moves themselves.
+_AT_A_TIME = 16_384
+
 
 class Moves(PlanePath, frozen=True, dict=True):
     """
@@ -133,11 +136,12 @@ class Moves(PlanePath, frozen=True, dict=True):
 
     def _where_known(self, function: Callable[..., Floats], *columns: Floats) -> Floats:
         """Return a function of the shape and columns of each move; NaN where the path of the tool is not known."""
-        known = np.flatnonzero(self.known)
-        if 2 * len(known) > len(self):
-            return np.where(self.known, function(*self.shape, *columns), np.nan)
-        of_known: list[NDArray[Any]] = [*self.shape, *columns]
-        return column_at(len(self), known, function(*(column[known] for column in of_known)), np.nan)
+        known, values = np.flatnonzero(self.known), np.full(len(self), np.nan)
+        of_moves: list[NDArray[Any]] = [*self.shape, *columns]
+        for first in range(0, len(known), _AT_A_TIME):
+            part = known[first : first + _AT_A_TIME]
+            values[part] = function(*(column[part] for column in of_moves))
+        return values
 
 
 def z_along(trace: Trace, moves: Moves) -> tuple[Floats, Floats]:
@@ -197,9 +201,9 @@ def any_in_row(hit: Mask, moves: Moves, count: int) -> Mask:
     return mask_at(count, moves.row[hit])
 
 
-def programmed_moves(trace: Trace) -> Moves:
-    """The programmed path: one move per row that moves on the polar plane."""
-    row = np.flatnonzero(trace.path.on_plane)
+def programmed_moves(trace: Trace, of_rows: Mask | bool = True) -> Moves:
+    """The programmed path: one move per row that moves on the polar plane; of_rows: the rows wanted, all if True."""
+    row = np.flatnonzero(trace.path.on_plane & of_rows)
     start, end = _ends(trace, row)
     return Moves(
         start=start,

@@ -102,7 +102,7 @@ class ToolCenter:
 
     @cached_property
     def _half_of_last_digit(self) -> Points:
-        return self.trace.lengths.half_of_last_digit[self._rows]
+        return self.trace.lengths.half_of_last_digit(self._rows)
 
     @cached_property
     def stretch(self) -> Rows:
