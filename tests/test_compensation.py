@@ -688,6 +688,21 @@ def test_unknown_values_stay_where_they_are(program, rules, data):
     assert tool.known.all() or any(path.moves[row] for row in rows)
 
 
+@pytest.mark.nightly
+@settings(max_examples=60, deadline=None)
+@given(contours(), RULES)
+def test_a_section_of_unknown_radius_is_the_same_beside_a_compensated_one(program, rules):
+    start, blocks = program
+    unknown = start, [of._replace(radius=math.nan) for of in blocks]
+    compensated = read_section("-20,0 | G41 0,0 | 40,0 | 40,30 | G40 60,30")
+    alone = tool_center_path(path_of(unknown), control(rules))
+    both = tool_center_path(path_of(unknown, compensated), control(rules))
+    assert both.known[len(alone) :].all()
+    for field in fields(alone):
+        column = getattr(alone, field.name)
+        assert np.array_equal(column, getattr(both, field.name)[: len(column)], equal_nan=column.dtype.kind in "cf")
+
+
 def assert_same(one: ToolPath, two: ToolPath) -> None:
     assert len(one.row) == len(two.row)
     for ours, theirs in zip(listed(one), listed(two), strict=True):

@@ -130,6 +130,8 @@ def _parts(section: Rows) -> list[int]:
 def _of_sections(path: Path, method: Method) -> ToolPath:
     with np.errstate(all="ignore"):
         programmed, center_on_path = moving_rows(path, method)
+        if not (programmed.on & ~np.isnan(programmed.radius)).any():
+            return _as_programmed(programmed, center_on_path)
         vectors = end_vectors(programmed, method)
         blocks = _blocks(programmed, vectors)
         fitting = fits(programmed, np.arange(len(programmed.row)), blocks.side, blocks.radius)
@@ -164,6 +166,22 @@ def _of_sections(path: Path, method: Method) -> ToolPath:
     )
 
 
+def _as_programmed(programmed: Programmed, center_on_path: Mask) -> ToolPath:
+    """The path where nothing is compensated with a known R: the programmed moves, unknown where R would move them."""
+    known = programmed.known & ~_begins_at_vector(programmed)
+    sides = programmed.side, programmed.radius, _runs_in_mode(programmed)
+    moves = _along(programmed, _Blocks(programmed.start, programmed.end, *sides, known, programmed.turning))
+    corner, none = np.zeros(len(moves), bool), np.zeros(len(center_on_path), bool)
+    faults = none, none, none, none, center_on_path
+    return ToolPath(*moves.shape, moves.row, moves.phase, corner, moves.known, *faults)
+
+
+def _runs_in_mode(programmed: Programmed) -> Mask:
+    """Which blocks run along the programmed path, and are no ramps."""
+    on, before_on, is_arc = programmed.on, programmed.before_on, programmed.is_arc
+    return np.asarray((on & (before_on | is_arc)) | (before_on & ~on & is_arc))
+
+
 def _blocks(programmed: Programmed, vectors: Vectors) -> _Blocks:
     """Where each block begins and ends once the vectors are known."""
     on, is_arc = programmed.on, programmed.is_arc
@@ -185,8 +203,7 @@ def _blocks(programmed: Programmed, vectors: Vectors) -> _Blocks:
     rows = np.flatnonzero(programmed.left_over & ~on & is_arc)
     entry[rows] = programmed.start[rows]
     entry[~is_known], leave[~is_known] = programmed.start[~is_known], programmed.end[~is_known]
-    in_mode = (on & (programmed.before_on | is_arc)) | (cancels & is_arc)
-    return _Blocks(entry, leave, side, radius, in_mode, is_known, programmed.turning.copy())
+    return _Blocks(entry, leave, side, radius, _runs_in_mode(programmed), is_known, programmed.turning.copy())
 
 
 def _begins_at_vector(programmed: Programmed) -> Mask:
