@@ -252,13 +252,13 @@ class Overcuts:
             return nothing
         if self._keeps_away:
             return nothing
+        from polarcheck.geometry.overcuts import own_loop
+
+        walls, left = self.walls
+        around = self._air_radius(walls), self.level  # before the path, which is large
         path, is_ramp = self.path
         radius = self._radius_of(path)
         tolerance = self.trace.machine.compensation.overcut_tolerance
-        walls, left = self.walls
-        from polarcheck.geometry.overcuts import own_loop
-
-        around = self._air_radius(walls), self.level
         cuts, tangled, parts = own_loop.overcuts(walls, left, *around, path, radius, is_ramp, tolerance, self.bar)
         return CutsOfRows.of(cuts, path, walls), is_ramp[cuts.move], tangled, parts
 

@@ -112,8 +112,8 @@ class Passes(Columns, frozen=True):
         chosen = (index >= first[self.number]) & (index <= last[self.number])
         weight = index - first[self.number] + 1.0
         center = np.where(np.isnan(self.center), 0, self.center)
-        columns = (self.end, self.end * weight, center * weight, self.end * self.motion)
-        sums = [np.add.reduceat(np.where(chosen, column, 0), self.first) for column in columns]
+        factors = (self.end, 1), (self.end, weight), (center, weight), (self.end, self.motion)
+        sums = [np.add.reduceat(np.where(chosen, point * factor, 0), self.first) for point, factor in factors]
         return numbered([np.round(part, 4) for total in sums for part in (total.real, total.imag)])
 
     # ---- rings ----

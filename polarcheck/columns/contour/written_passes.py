@@ -123,20 +123,23 @@ class _Passes(NamedTuple):
 
 def written_differences(trace: Trace) -> Iterator[WrittenDifference]:
     """The passes that are written otherwise than one of as many blocks: the more frequent one, or the one above."""
-    values = np.stack([trace.blocks.word(address) for address in _ADDRESSES])
-    rows = np.flatnonzero(trace.mode.in_polar & ~np.isnan(values).all(axis=0))
+    word, is_written = trace.blocks.word, np.zeros(len(trace), bool)
+    for address in _ADDRESSES:
+        is_written |= ~np.isnan(word(address))
+    rows = np.flatnonzero(trace.mode.in_polar & is_written)
     begins = (trace.path.moves_z & ~trace.path.travels) | trace.mode.enters
     first = np.flatnonzero(np.diff(np.cumsum(begins)[rows], prepend=-1))
     count = np.diff(first, append=len(rows))
     if np.count_nonzero((count >= _FEWEST) & (count <= _MOST)) < 2:
         return
-    number = _mixed(values[:, rows])
+    values = np.stack([word(address)[rows] for address in _ADDRESSES])
+    number = _mixed(values)
     words = np.add.reduce(number * _odd(len(_ADDRESSES))[:, None], axis=0, dtype=np.uint64)
     state = _states(trace)[rows]
     index = np.arange(len(rows)) - np.repeat(first, count)
     total = np.add.reduceat(np.add.reduce(number, axis=0, dtype=np.uint64), first)
     shape = np.add.reduceat(_mixed(index.astype(np.float64)) * (words + state.astype(np.uint64)), first)
-    passes = _Passes(trace, rows, first, count, words, state, total, shape, values[:, rows])
+    passes = _Passes(trace, rows, first, count, words, state, total, shape, values)
     yield from (one for one in chain(passes.with_the_same_numbers(), passes.in_one_word()) if one is not None)
 
 
