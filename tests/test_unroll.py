@@ -302,6 +302,10 @@ def test_depths_rapids_and_what_else_stands_in_a_section() -> None:
     )
 
 
+def test_a_section_in_which_nothing_moves_is_left_out() -> None:
+    assert unrolled(f"{HEAD}{END}")[0] == f"{HEAD}{END}".replace("G12.1\n", "").replace("G13.1\n", "")
+
+
 def test_rapid_traverse_keeps_its_path_by_the_f_for_positioning() -> None:
     program = f"{HEAD}G0 X20. Y12.\nG1 X-20. F300\nG0 X80. Y0\n{END}".replace("G12.1", "G112").replace("G13.1", "G113")
     haas = ("--machine", "haas-lathe", "--feed", "per-minute")

@@ -228,7 +228,8 @@ def _passed_on(moves: Moves, steps: Steps, is_short: Mask) -> Mask:
     Return a mask of the short blocks whose path the next block of the section can take over; that one is not short.
     """
     following, last = np.append(steps.move[1:], -1), np.append(is_short[1:], True)
-    same = (steps.move >= 0) & (following >= 0) & (moves.section[following] == moves.section[steps.move])
+    section = np.append(moves.section, -1)  # a section may have no move at all
+    same = (steps.move >= 0) & (following >= 0) & (section[following] == section[steps.move])
     same &= np.append(steps.is_rapid[1:], True) == steps.is_rapid
     return np.asarray(is_short & ~last & same & np.isnan(steps.z))
 
