@@ -3,8 +3,6 @@ Findings in called programs: those of another file are shown at the block of thi
 channel of this file where they are. A finding of some of the calls of a program says of which.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 
 import msgspec

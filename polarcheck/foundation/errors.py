@@ -16,8 +16,6 @@ What can go wrong on our side. What is wrong in a program is a finding, never an
     `-- RuleError         a rule without severity, message, docstring: a bug in a rule file
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """The radius of the bar over Z: what turning has left, between bounds."""
 
-from __future__ import annotations
-
 import functools
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """The comments of a file, found by their words and by their place; comment_reader reads what one of them states."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 from typing import NamedTuple

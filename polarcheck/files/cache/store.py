@@ -6,8 +6,6 @@ comes with an archive, or from another user, makes no program pass. Whatever goe
 what cannot be read is absent, what cannot be written is left out.
 """
 
-from __future__ import annotations
-
 import contextlib
 import os
 import stat

@@ -6,8 +6,6 @@ keyword of Python (api/keywords.py), and the names by which messages and `config
 polarcheck.toml may hold are those of program/machines/job.py; a test holds both to the same names.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 

@@ -1,7 +1,5 @@
 """Selects rules and severities by names, groups and alarms, from the command line and from the job."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Iterable, Sequence
 from functools import partial

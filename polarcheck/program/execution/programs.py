@@ -3,8 +3,6 @@ The programs of a file and of those that it calls: where each begins and ends, i
 the flow can turn.
 """
 
-from __future__ import annotations
-
 import bisect
 import enum
 import itertools

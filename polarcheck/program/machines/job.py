@@ -1,7 +1,5 @@
 """What belongs to the job: tool offsets, stock, work offsets, how programs are run, what is asked of the check."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Callable, Iterable, Mapping

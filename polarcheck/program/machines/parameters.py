@@ -1,7 +1,5 @@
 """Control parameters by their own names: what the user copies from the control, turned into values of the profile."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

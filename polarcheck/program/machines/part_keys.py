@@ -1,7 +1,5 @@
 """What a program is meant to make: a shape with its numbers, or a drawing, as [[part]] in a job file gives it."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from types import MappingProxyType
