@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import pytest
 from cases import looped
 from programs import report_of, said
 from test_explanations import CENTERED, HEAD, ROUNDED, program
+
+from polarcheck.checking import hidden_findings
 
 #: Blocks that are wrong, by what stands there in the sound contour, and what is to be written.
 Slips = dict[str, tuple[str, str]]
@@ -121,3 +125,20 @@ def test_what_an_explanation_leaves_under_another_finding_is_told(
         text = f"{before}{wrong}{behind}"
     report = report_of(text.replace("/", "\n") + "\nM30\n", machine, tool, job={"stock": {"diameter": 40}})
     assert {finding.line for finding in report.findings} == lines
+
+
+def test_of_many_words_of_an_address_a_few_are_left_out_in_turn(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A file that is no program may have a block of any length."""
+    tried = 0
+    without = hidden_findings.without
+
+    def counted(*arguments: Any) -> Any:
+        nonlocal tried
+        tried += 1
+        return without(*arguments)
+
+    monkeypatch.setattr(hidden_findings, "without", counted)
+    written = [f"G1 X-34.{' X-34.' * 300}" if line == "G1 X-34." else line for line in ROUNDED]
+    report = report_of(program(written), "fanuc-30i", "1:radius=2")
+    assert "word-repeated" in {rule for _, rule in said(report)}
+    assert 0 < tried < 20

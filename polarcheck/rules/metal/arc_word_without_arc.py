@@ -67,12 +67,12 @@ def arc_word_without_arc(arc_words: ArcWords) -> Hits:
 
 
 def details(hit: Hit, arc_words: ArcWords, machine: Machine) -> Details:
-    from polarcheck.rules.wording.written import executed_word, move_code
+    from polarcheck.rules.wording.written import move_code
 
     codes = {Motion.CW: move_code(machine, "arc_clockwise"), Motion.CCW: move_code(machine, "arc_counterclockwise")}
     sense = arc_words.sense(hit.row)
     missing = f"{' or '.join(codes.values()) if sense is None else codes[sense]} is missing"
     return {
-        "word": " ".join(executed_word(hit.trace.run, index) for index in hit.words),
+        "word": hit.word_list,
         "forgotten_arc": missing + (f", here and in {hit.count - 1} more blocks" if hit.count > 1 else ""),
     }
