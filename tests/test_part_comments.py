@@ -46,6 +46,26 @@ def messages(call: str, *sections: str, units: str = "G21", title: str = "O1") -
 
 @pytest.mark.ci
 @looped(
+    ("old", "new"),
+    [("X-22. C6.351\nC-6.351", "X-23. C6.351\nC-6.351"), ("X0 C12.702", "X1. C12.9"), ("X-22. C6.351", "X-21. C7.")],
+)
+@looped("machine", ["fanuc-30i", "doosan", "gsk-988"])
+def test_a_polygon_with_the_sides_of_the_comment_is_regular(old: str, new: str, machine: str) -> None:
+    def told(*sections: str, comment: str = "HEX 22 AF") -> list[str]:
+        program = f"O1\nG21 G98\nT0101 ({comment})\n{''.join(sections)}G0 Z50.\nM30\n"
+        return [found.message for found in report_of(program, machine, "1:radius=4,nose=0", only=[RULE]).findings]
+
+    uneven = HEXAGON.replace(old, new)
+    assert told(HEXAGON) == []
+    (message,) = told(uneven)
+    assert "states hexagon 22 mm; the polygon here is not regular" in message
+    assert told(uneven, comment="HEX 22 AF ROUGH") == []
+    assert told(uneven, HEXAGON) == []
+    assert told(uneven, comment="6 SIDES, EM8") == []
+
+
+@pytest.mark.ci
+@looped(
     ("comment", "made"),
     [
         ("HEX 24 AF", "hexagon 22 mm across flats"),

@@ -33,7 +33,7 @@ from polarcheck.foundation.arrays import (
     different,
     folded,
 )
-from polarcheck.geometry.shapes.shape import POLYGONS
+from polarcheck.geometry.shapes.shape import POLYGONS, SIDES_OF
 
 if TYPE_CHECKING:
     from polarcheck.geometry.segments import Curves
@@ -43,6 +43,8 @@ if TYPE_CHECKING:
 _DEPTH_TOLERANCE, _DEPTH_SHARE = 0.3, 0.02
 #: A shorter wall may be that of a corner [mm].
 _SHORTEST = 0.5
+#: Sides of a regular polygon are as far from its center, but for the digits of its corners [mm].
+_SAME = 0.05
 #: A program with more sections than this is not held against its comments.
 _MOST_SECTIONS = 100
 
@@ -80,7 +82,7 @@ class Contradiction(msgspec.Struct, frozen=True):
     comment: its number.
     stated, made: sizes or depths [mm].
     shape: that is made; DEPTH where the depth differs, TURNED where the program turns to a larger diameter than that of
-    the bar, BEYOND where the part reaches beyond it.
+    the bar, BEYOND where the part reaches beyond it, UNEVEN of a polygon with as many sides that is not regular.
     stated_shape: that the comment states; empty where it is the same.
     """
 
@@ -92,7 +94,7 @@ class Contradiction(msgspec.Struct, frozen=True):
     stated_shape: str = ""
 
 
-DEPTH, TURNED, BEYOND = "depth", "turned", "beyond"
+DEPTH, TURNED, BEYOND, UNEVEN = "depth", "turned", "beyond", "uneven"
 
 
 class PartComments(Columns, frozen=True):
@@ -284,7 +286,7 @@ class PartComments(Columns, frozen=True):
     def _contradictions(
         self, comment: PartComment, size: StatedShape, of_comment: list[Shape]
     ) -> Iterator[Contradiction]:
-        from polarcheck.columns.metal.stated_sizes import comparable, has_side, is_regular_polygon, is_size
+        from polarcheck.columns.metal.stated_sizes import comparable, has_side, is_regular_polygon, is_size, is_uneven
 
         pairs = comparable(size, of_comment)
         if comment.in_title:
@@ -299,6 +301,11 @@ class PartComments(Columns, frozen=True):
             across = shape.values["across_flats"]
             if not comment.in_title or is_size(size, across):
                 yield Contradiction(shape.row, comment.comment, size.size, across, shape.name, size.shape)
+        else:
+            for shape in of_comment:
+                if is_uneven(size, shape):
+                    along_x = shape.values["x_most"] - shape.values["x_least"]
+                    yield Contradiction(shape.row, comment.comment, size.size, along_x, UNEVEN, size.shape)
 
     def _is_one_part(self, comment: PartComment) -> bool:
         """The program of a title has one section, or makes one shape."""
@@ -373,7 +380,7 @@ def _is_depth(depth: float, value: Floats) -> Mask:
 
 def _has_walls_of(sizes: Sequence[StatedShape], walls: Curves) -> bool:
     """
-    A cheap test: straight walls lie at half of one of these sizes from the axis, in as many directions as it has.
+    A cheap test: straight walls lie at half of one of these sizes from the axis, all that it has, and all as far.
 
     Then some shape has this size.
     """
@@ -383,11 +390,10 @@ def _has_walls_of(sizes: Sequence[StatedShape], walls: Curves) -> bool:
     is_side = ~walls.is_arc & walls.is_known & (np.abs(along) > _SHORTEST)
     direction = along[is_side] / np.abs(along[is_side])
     distance = np.abs((walls.start[is_side] * direction.conj()).imag)
-    sides_of = {name: sides for sides, name in POLYGONS.items()}
     for size in sizes:
         at_size = np.abs(2 * distance - size.size) <= tolerance_of(size.size)
-        angle = np.rint(np.degrees(np.angle(direction[at_size] ** 2)) / 2) % 180
-        sides = sides_of.get(size.shape, 0)
-        if sides and len(different(angle)) == (sides if sides % 2 else sides // 2):
+        angle = np.rint(np.degrees(np.angle(direction[at_size]))) % 360
+        is_even = at_size.any() and np.ptp(distance[at_size]) <= _SAME
+        if is_even and len(different(angle)) == SIDES_OF.get(size.shape, -1):
             return True
     return False

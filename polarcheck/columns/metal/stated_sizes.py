@@ -7,11 +7,18 @@ from collections.abc import Iterator
 import numpy as np
 
 from polarcheck.columns.words.comment_reader import StatedShape, tolerance_of
-from polarcheck.geometry.shapes.shape import POLYGONS, SAME, Shape
+from polarcheck.geometry.shapes.shape import POLYGONS, SAME, SIDES_OF, Shape
+
+
+def is_uneven(size: StatedShape, shape: Shape) -> bool:
+    """A boss with as many sides as the regular polygon that a comment states, and not regular."""
+    return shape.name == "polygon" and not shape.inside and shape.values["sides"] == SIDES_OF.get(size.shape)
 
 
 def fits(size: StatedShape, shape: Shape) -> bool:
-    """A shape has this size, in whatever way it is measured, and is no other regular polygon."""
+    """A shape has this size, in whatever way it is measured, and is no other polygon."""
+    if is_uneven(size, shape):
+        return False
     if size.shape in POLYGONS.values() and is_regular_polygon(shape) and shape.name != size.shape:
         return False
     if size.shape == "keyway":
@@ -69,7 +76,7 @@ def comparable(size: StatedShape, shapes: list[Shape]) -> list[tuple[Shape, floa
         if shape.name == size.shape or not size.shape or (size.shape == "flats" and not is_polygon):
             pairs.append((shape, value))
     # Corners that are cut off beside the flats make twice as many sides.
-    with_corners = {name: 2 * sides for sides, name in POLYGONS.items()}.get(size.shape, 0)
+    with_corners = 2 * SIDES_OF.get(size.shape, 0)
     pairs += [
         (shape, shape.values["least"])
         for shape in shapes

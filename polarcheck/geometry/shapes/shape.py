@@ -26,6 +26,8 @@ POLYGONS = {
     10: "decagon",
     12: "dodecagon",
 }
+#: How many sides each of these names has.
+SIDES_OF = {name: sides for sides, name in POLYGONS.items()}
 
 
 class OddSide(msgspec.Struct, frozen=True):

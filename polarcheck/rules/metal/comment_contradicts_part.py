@@ -38,7 +38,8 @@ def comment_contradicts_part(part_comments: PartComments) -> Hits:
     it states sizes in plain words: HEX 24 AF, SQ 20, FLATS 22, DIA 30 BOSS, DIA 20 PIN, KEYWAY 8, DEPTH 5, 5 DEEP. A
     plain DIA 20 counts in the title alone, against a larger round, where nothing is turned. Of several sizes one that
     is made is enough. Roughing, sockets, bars (HEX 24 AF FROM HEX 32), and a size that another section reaches
-    contradict nothing. A depth counts from Z0 or from any face that the program cuts.
+    contradict nothing. A depth counts from Z0 or from any face that the program cuts. A polygon with as many sides as
+    the comment says is regular, too: where two words move a flat, nothing else objects to it.
 
     The comment that states the bar of the program (BAR DIA 28, STOCK D50, HEX BAR 32) may stand anywhere in it. It
     contradicts a larger diameter that the program turns first, and a contour that reaches beyond the bar with its
@@ -235,7 +236,7 @@ def comment_contradicts_part(part_comments: PartComments) -> Hits:
 
 
 def details(hit: Hit, part_comments: PartComments) -> Details:
-    from polarcheck.columns.metal.stated_parts import BEYOND, DEPTH, TURNED
+    from polarcheck.columns.metal.stated_parts import BEYOND, DEPTH, TURNED, UNEVEN
     from polarcheck.rules.wording.written import comment_in_words
 
     contradiction, text = part_comments.contradictions[hit.row], hit.trace.text
@@ -245,6 +246,7 @@ def details(hit: Hit, part_comments: PartComments) -> Details:
         DEPTH: f"the cut is {made} deep",
         TURNED: f"the program turns to {made} here",
         BEYOND: f"the contour reaches beyond it, to {made}",
+        UNEVEN: f"the polygon here is not regular, it measures {made} along X",
     }
     across = _ACROSS.get(contradiction.shape, "across flats")
     return {
