@@ -722,3 +722,12 @@ def test_edits_that_are_tried_are_counted_and_those_that_are_not_are_said(
     (entry,) = (entry for entry in report.not_evaluated if entry.rule == "nearly-regular-contour")
     assert entry.reason.startswith(f"what explains the findings in the section of line {lines.index('G12.1') + 1} was")
     assert (entry.matters, entry.blocks) == (False, len(lines) - lines.index("G12.1") - 2)
+
+
+@pytest.mark.parametrize("code", ["G2", "G3"])
+def test_a_lead_with_its_chord_along_the_wall_is_like_no_other(code: str) -> None:
+    """The R with which it would be tangent is infinite; a warning of numpy would fail the test."""
+    lead = [*("G42 X36. C-20. F200", f"{code} X36. C-5. R20.", "G1 C10.", "X-36.", "C-10.", "X36.", "C-5.")]
+    text = "\n".join([*HEAD, *lead, "G3 X56. C5. R10.", "G40 G1 X90. F1000", "Z2.", "G13.1", "G0 Z50.", "M30", ""])
+    rules = {rule for _, rule in said(report_of(text, "fanuc-30i", "1:radius=4"))}
+    assert "arc-not-tangent" not in rules

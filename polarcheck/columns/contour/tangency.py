@@ -250,11 +250,12 @@ class Tangency(Columns, frozen=True):
         fits = (corner > np.maximum(_CORNER, _CLEARLY * slack)) & (np.abs(half) > _FLAT) & (np.abs(half) < np.pi / 2)
         fits &= (half > 0) == (passes.motion[move] == Motion.CCW)
         models = np.append(np.abs(self._written[move[is_tangent]]), np.inf)
+        move, chord, half, digit, radius, near = (part[fits] for part in (move, chord, half, digit, radius, near))
         model = models[np.abs(models - radius[:, None]).argmin(axis=1)]
-        fits &= np.abs(model - radius) <= near
-        radius = model
-        center = passes.start[move] + 1j * np.sign(half) * radius * chord / np.abs(chord) * np.exp(-1j * half)
-        return IntendedArcs(move[fits], radius[fits], center[fits], digit[fits])
+        is_like = np.abs(model - radius) <= near
+        move, chord, half, digit, model = (part[is_like] for part in (move, chord, half, digit, model))
+        center = passes.start[move] + 1j * np.sign(half) * model * chord / np.abs(chord) * np.exp(-1j * half)
+        return IntendedArcs(move, model, center, digit)
 
     def _tolerance_of(self, index: int) -> float:
         """Uncertainty by rounding of the R that would be tangent [mm]."""
