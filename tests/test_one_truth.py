@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import pytest
 from cases import looped
@@ -13,6 +14,7 @@ from hexagon_program import CONTROLS, CUTTER, HEX
 from programs import report_of, tables_of
 
 from polarcheck.commands import main
+from polarcheck.program.execution.listing import Listing
 from polarcheck.reports.made_parts.part_report import in_one_line, made_by
 
 #: A hexagon of 36 mm across its flats with R 4 of offset 1; a / stands for the end of a block.
@@ -925,6 +927,22 @@ def test_a_condition_of_which_no_section_can_come_has_no_weight(control: str, tm
     for new, code in ((text, 0), (other, 1)):
         assert certified(tmp_path, control, text, new).exit_code == code
         assert ("not compared, because" in compared(tmp_path, control, text, new).stdout) is (new is other)
+
+
+def test_what_runs_behind_conditions_is_looked_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of many conditions each would look at all that follows."""
+    looked_at = 0
+    target = Listing._target
+
+    def counted(*arguments: Any) -> int:
+        nonlocal looked_at
+        looked_at += 1
+        return target(*arguments)
+
+    monkeypatch.setattr(Listing, "_target", counted)
+    text = program("fanuc-30i", ("/M30", "/IF[#501GE10]THEN #3000=1" * 200 + "/M30"))
+    assert report_of(text, "fanuc-30i", CUTTER).verdict == "pass"
+    assert 200 <= looked_at <= 500
 
 
 @looped(

@@ -254,6 +254,7 @@ def _repairs(engine: Engine, finding: Finding) -> Iterator[list[Replace]]:
         alike = [word for word in words if address[word] == address[at[0]]]
         letter = trace.axes.virtual_addresses(row)[0]
         if len(alike) > 1 and chr(address[at[0]]) not in "GM":
+            # One more than are tried tells that the search was not ended.
             yield from (without(run, row, [word]) for word in alike[: _MOST_CHECKS + 1])
         elif chr(address[at[0]]) not in {letter, *trace.axes.virtual_addresses(row), *_NOT_MISTAKEN}:
             yield [in_place_of(run, at[0], letter + run.written(at[0]).strip()[1:])]

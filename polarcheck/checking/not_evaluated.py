@@ -138,13 +138,12 @@ def _is_done_before(trace: Trace, remark: Remark) -> bool:
     return len(rows) > 0 and not bool(np.any((trace.mode.section[rows] >= 0) | (follows & np.isnan(position))))
 
 
-def _is_behind_sections(trace: Trace, remark: Remark) -> bool:
-    """A condition behind all sections, with no switch of the mode in what runs behind it, whatever it says."""
+def _last_switch(trace: Trace) -> int:
+    """The last block of the file that switches the mode on; the number of all blocks where no section is left."""
     sections, words = trace.mode.sections, trace.text.words
-    if not len(sections) or not sections.left[-1] or remark.row <= sections.leave[-1]:
-        return False
-    switches = words.block[is_code(words, trace.machine.polar.on)]
-    return not bool((switches >= remark.block).any())
+    if not len(sections) or not sections.left[-1]:
+        return len(trace.text.blocks)
+    return int(words.block[is_code(words, trace.machine.polar.on)].max(initial=-1))
 
 
 def unexecuted(tables: Tables, *, of_metal: bool = True) -> Iterator[NotEvaluated]:
@@ -160,12 +159,14 @@ def unexecuted(tables: Tables, *, of_metal: bool = True) -> Iterator[NotEvaluate
             rule="all", reason=f"the file is written for {language.title}: convert it for this lathe", blocks=len(trace)
         )
         return
+    # A condition behind all sections leads to none where no switch stands below it and all runs down to the end.
+    last_switch = _last_switch(trace) if of_metal else len(trace.text.blocks)
     remarks = Counter(
         (
             reason_of(remark, trace.machine),
             bool(remark.values.get("matters", True))
             and not _is_done_before(trace, remark)
-            and not (of_metal and _is_behind_sections(trace, remark)),
+            and not (remark.block > last_switch and remark.row > trace.mode.sections.leave[-1]),
         )
         for remark in trace.run.remarks
     )

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 
@@ -13,9 +12,6 @@ from polarcheck.commands.exit_codes import CLEAN, COULD_NOT_RUN
 from polarcheck.commands.options import option
 from polarcheck.commands.output import say, show
 from polarcheck.foundation.errors import MachineError, UsageError
-
-if TYPE_CHECKING:
-    pass
 
 
 @click.command(short_help="List the machines, show one, write or check one of your own.")

@@ -132,7 +132,9 @@ def mask_at(count: int, places: NDArray[Any] | Sequence[int]) -> Mask:
     return mask
 
 
-def column_at(count: int, places: NDArray[Any] | Sequence[int], values: Any, remaining: complex) -> NDArray[Any]:
+def column_at(
+    count: int, places: NDArray[Any] | Sequence[int], values: Any, remaining: complex | np.generic
+) -> NDArray[Any]:
     """
     Return a column of so many elements with these values at some places, given by number or as a mask.
 

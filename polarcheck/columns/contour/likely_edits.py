@@ -132,7 +132,7 @@ def _likeliest(compared: Compared, most: int, least_gain: float, *, is_one_of_tw
 def _likely(compared: Compared, number: int) -> Likely:
     _, edits, _, chances, gain = compared
     closes, smooths = (bool(part[number] == 0 and part[0] > 0) for part in (chances.is_open, chances.corners_at_arcs))
-    # A circle that is moved about the center of C has its corners still.
+    # Corners at arcs about the center of C are counted among those of lines: moved there, a circle has no fewer.
     smooths &= bool(chances.corners[number] <= chances.corners[0])
     is_clear = bool(gain[number] >= LEAST_GAIN)
     return Likely(edits[number - 1], float(gain[number]), _becomes(chances, number), closes, smooths, is_clear)

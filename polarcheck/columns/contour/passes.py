@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from polarcheck.columns.trace import Trace
@@ -187,7 +189,7 @@ class Passes(Columns, frozen=True):
         return np.where(previous < 0, np.nan, into), np.where(following < 0, np.nan, out)
 
 
-def numbered(columns: list[Floats]) -> Rows:
+def numbered(columns: Sequence[Floats | Rows]) -> Rows:
     """A number for each element, the same where all columns are equal; np.unique would load masked arrays."""
     order = np.lexsort(columns)
     differs = np.zeros(len(order), bool)

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from polarcheck.columns.contour.correction import Correction
+from polarcheck.columns.contour.passes import numbered
 from polarcheck.columns.contour.written_loop import axis_words
 from polarcheck.columns.path.lengths import same_place
 from polarcheck.columns.trace import Trace
@@ -23,6 +24,8 @@ from polarcheck.geometry.tolerances import ROUNDING
 _FEWEST, _MOST = 4, 36
 #: Even depths at one place, at the least, one of which nothing is cut at.
 _DEPTHS = 3
+#: Decimals of coordinates of one place [mm].
+_DECIMALS = 5
 
 
 def misplaced(trace: Trace, rows: Rows) -> Iterator[Correction]:
@@ -37,18 +40,21 @@ def idle(trace: Trace, rows: Rows) -> Iterator[Correction]:
     following = np.append(moving, -1)[np.searchsorted(moving, rows, side="right")]
     cuts = trace.path.travels[following] & (trace.axes.motion[following] != Motion.RAPID)
     cuts &= trace.mode.section[following] == trace.mode.section[rows]
-    words = trace.blocks.word_indices("Z")
-    depth = -trace.path.z
-    for row in rows[~cuts & (depth[rows] > 0)].tolist():
-        beside = (trace.mode.section[rows] == trace.mode.section[row]) & (rows != row)
-        beside &= np.abs(trace.path.end[rows] - trace.path.end[row]) <= ROUNDING
-        steps = np.diff(different(np.append(depth[rows[beside]], depth[row])))
+    place = np.round(trace.path.end[rows], _DECIMALS)
+    number = numbered([trace.mode.section[rows], place.real, place.imag])
+    order, begins = np.argsort(number, kind="stable"), np.append(0, np.cumsum(np.bincount(number)))
+    has_one, words = np.bincount(number, ~cuts) == 1, trace.blocks.word_indices("Z")
+    for index in np.flatnonzero(~cuts & has_one[number]).tolist():
+        at_place = order[begins[number[index]] : begins[number[index] + 1]]
+        depth, own = -trace.path.z[rows[at_place]], -trace.path.z[rows[index]]
+        depths = different(depth)
+        steps = np.diff(depths)
+        first, last = np.searchsorted(trace.run.row[words], (rows[index], rows[index] + 1))
         # The first depth may be one to which a tool goes fast.
-        is_deeper = bool(beside.any() and depth[row] > depth[rows[beside]].min() + ROUNDING)
-        word = words[trace.run.row[words] == row]
-        if is_deeper and cuts[beside].all() and len(steps) + 1 >= _DEPTHS and np.ptp(steps) <= ROUNDING and len(word):
-            becomes = f"something would be cut at each of its {len(steps) + 1} depths"
-            yield Correction(row, int(word[-1]), "", "nothing is cut at it", "with a cut behind it", becomes, "depths")
+        if len(depths) >= _DEPTHS and own > max(depths[0] + ROUNDING, 0) and np.ptp(steps) <= ROUNDING and last > first:
+            becomes = f"something would be cut at each of its {len(depths)} depths"
+            word = int(words[last - 1])
+            yield Correction(rows[index], word, "", "nothing is cut at it", "with a cut behind it", becomes, "depths")
 
 
 def _of_section(trace: Trace, rows: Rows) -> Iterator[Correction]:

@@ -119,7 +119,7 @@ class UncompensatedCuts(Columns, frozen=True):
         is_line = (trace.axes.motion == Motion.LINE) & path.travels & ~path.moves_z
         strokes = goes_down[plunge] & is_line[out] & is_line[back] & (np.diff(trace.mode.section[rows])[1:] == 0)
         strokes &= np.abs(path.end[back] - path.start[out]) <= ROUNDING
-        return trace.blocks.mask_of([*out[strokes], *back[strokes]])
+        return trace.blocks.mask_of(np.append(out[strokes], back[strokes]))
 
     @property
     def _on_plane(self) -> tuple[Rows, Points, Points, Points, Floats, Rows]:

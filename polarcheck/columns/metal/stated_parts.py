@@ -23,16 +23,7 @@ from polarcheck.columns.words.comment_reader import (
 )
 from polarcheck.columns.words.comments import Comments, named_tool
 from polarcheck.columns.words.stock_comments import StockComments
-from polarcheck.foundation.arrays import (
-    Columns,
-    Floats,
-    Mask,
-    Rows,
-    cached_property,
-    column_at,
-    different,
-    folded,
-)
+from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, cached_property, column_at, different, folded
 from polarcheck.geometry.shapes.shape import POLYGONS, SIDES_OF
 
 if TYPE_CHECKING:

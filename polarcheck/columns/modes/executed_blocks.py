@@ -140,7 +140,7 @@ class ExecutedBlocks(Lookups, frozen=True):
 
     def _distance(self, address: str, of_words: NDArray[np.int16]) -> States:
         index = self.word_indices(address)
-        return column_at(len(self.run), self.run.row[index], of_words[index], 0).astype(np.int16)
+        return column_at(len(self.run), self.run.row[index], of_words[index], np.int16(0))
 
     def has(self, *addresses: str) -> Mask:
         """True where the row has a word of any of the addresses; cannot be written to."""
@@ -226,9 +226,8 @@ class ExecutedBlocks(Lookups, frozen=True):
         """By letter the G or M words grouped by their codes, the codes that there are, and where each begins."""
         groups = {}
         for letter, numbers in (("G", self.g_codes), ("M", self.m_codes)):
-            order = np.argsort(numbers.astype(np.int16), kind="stable").astype(
-                np.int32
-            )  # of small numbers in linear time
+            # Small numbers are sorted in linear time.
+            order = np.argsort(numbers.astype(np.int16), kind="stable").astype(np.int32)
             rising = numbers[order]
             begins = np.flatnonzero(first_in_run(rising))
             groups[letter] = order, rising[begins], np.append(begins, len(order))

@@ -49,6 +49,7 @@ class Listing:
         self.names = Names()
         self._statements: dict[int, Statement] = {}
         self._loops: dict[int, Structures] = {}
+        self._lowest: dict[int, tuple[list[int], list[int]]] = {}
         self._structures: dict[int, Structures] = {}
         self._calls: dict[int, dict[ProgramName, bool]] = {}
         self._nothing_known = Variables(self.macro)
@@ -109,30 +110,52 @@ class Listing:
     def runs_down(self, block: int) -> bool:
         """Return True if from a block on its program calls nothing, computes no code and jumps to blocks below it."""
         program = self.programs.around(block)
-        low, high = (bisect.bisect_left(self.stops, limit) for limit in (block, program.end))
-        return all(self._runs_down(self.statement(stop), block, program) for stop in self.stops[low:high])
+        if program.first not in self._lowest:
+            self._lowest[program.first] = self._lowest_targets(program)
+        stops, lowest = self._lowest[program.first]
+        return lowest[bisect.bisect_left(stops, block)] > block
 
-    def _runs_down(self, statement: Statement, block: int, program: Program) -> bool:
+    def _lowest_targets(self, program: Program) -> tuple[list[int], list[int]]:
+        """
+        Return the last stops of a program, and the lowest block that it may go on at from each of them on.
+
+        That is the end of the program where nothing jumps, -1 where something may lead anywhere; above the first of the
+        stops something does. Of the blocks behind the last stop the end is the last number.
+        """
+        low, high = (bisect.bisect_left(self.stops, limit) for limit in (program.first, program.end))
+        stops, lowest = [], [program.end]
+        for stop in reversed(self.stops[low:high]):
+            stops.append(stop)
+            lowest.append(min(lowest[-1], self._lowest_target(self.statement(stop), program)))
+            if lowest[-1] < 0:
+                break
+        return stops[::-1], lowest[::-1]
+
+    def _lowest_target(self, statement: Statement, program: Program) -> int:
+        """Return the block that a statement jumps to, the end of the program for none; -1 if it may lead anywhere."""
         parts = (*statement.more, *filter(None, (statement.then,)))
-        if not all(self._runs_down(part, block, program) for part in parts):
-            return False
+        of_parts = min((self._lowest_target(part, program) for part in parts), default=program.end)
+        return min(of_parts, self._target(statement, program))
+
+    def _target(self, statement: Statement, program: Program) -> int:
         match statement.kind:
             case Kind.GOTO | Kind.IF_GOTO:
                 steps = statement.jump.steps if statement.jump is not None else ()
                 blocks = self.programs.labels(program).get(statement.label, [])
                 if [step.name for step in steps] == ["number"]:
                     blocks = self.programs.targets(program).get(round(steps[0].number), [])
-                return len(blocks) > 0 and blocks[0] > block
+                return blocks[0] if len(blocks) else -1
             case Kind.NC:
                 codes = [word for word in statement.words if word.address in ("G", "M")]
-                return not any(word.written is None or self._switches_on(word) for word in codes)
+                runs_on = not any(word.written is None or self._switches_on(word) for word in codes)
             case Kind.CALL:
                 is_return = statement.call in self.macro.program_returns
-                return is_return and not any(word.address == "P" for word in statement.words)
+                runs_on = is_return and not any(word.address == "P" for word in statement.words)
             case Kind.STRUCTURE:
-                return statement.structure in ("IF", "ELSE", "ENDIF")
+                runs_on = statement.structure in ("IF", "ELSE", "ENDIF")
             case _:
-                return statement.kind in (Kind.ASSIGN, Kind.OUTPUT, Kind.IF_THEN)
+                runs_on = statement.kind in (Kind.ASSIGN, Kind.OUTPUT, Kind.IF_THEN)
+        return program.end if runs_on else -1
 
     def _switches_on(self, word: Word) -> bool:
         (step, *_) = word.value.steps

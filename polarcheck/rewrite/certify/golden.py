@@ -126,9 +126,8 @@ def _not_known(trace: Trace) -> Iterator[Step]:
     remarks = [remark for remark in run.remarks if remark.kind in BLOCKS_NOT_KNOWN] if len(trace) else []
     blocks = {remark.block for remark in remarks}
     # What such a condition leads to at the end of a program has no weight for the verdict: it is kept as it is written.
-    for remark in remarks:
-        if remark.row >= 0:
-            blocks.update(set(range(remark.block, len(trace.text.blocks))).difference(run.block.tolist()))
+    first = min((remark.block for remark in remarks if remark.row >= 0), default=len(trace.text.blocks))
+    blocks.update(set(range(first, len(trace.text.blocks))).difference(run.block.tolist()))
     ordered = sorted(blocks)
     for block, row in zip(ordered, rows_behind(trace, ordered) if ordered else (), strict=True):
         if text := "".join(trace.text.without_comments(block).split()).upper():

@@ -198,6 +198,7 @@ class _Reader:
         self._is_same_machine = is_same_machine
         self._of_moves = _words_of_moves(trace) | (set() if with_sides else {"D"})
         self._special = special_rows(trace)
+        #: The time of a dwell [ms], whichever word says it; NaN for other rows.
         self._dwell = np.where(dwells(trace), 1000 * time_of_dwells(trace), np.nan)
         self._turns_side = _turns_side(trace) & with_sides
         self._is_left_out = trace.run.words.is_unreadable | _of_calls(trace)
@@ -238,8 +239,8 @@ class _Reader:
             return (token, None, text) if self._is_same_machine or text in _EVERYWHERE else None
         if not self._is_same_machine:
             return None
-        if name in self._trace.machine.feed.dwell_words and self._dwell[row] == self._dwell[row]:
-            return "P", float(self._dwell[row]), text  # whichever word says it [ms]
+        if name in self._trace.machine.feed.dwell_words and not np.isnan(self._dwell[row]):
+            return "P", float(self._dwell[row]), text
         if name in ("S", "T"):
             if not is_special:
                 if self._in_force.get(name) == value:
