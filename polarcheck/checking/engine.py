@@ -49,14 +49,12 @@ class Listed(msgspec.Struct, frozen=True):
 
     index: the elements hit, sorted (hits).
     finding: the index in `findings` of the finding that covers each hit (hits).
-    silent: True where an allow comment silences the hit (hits).
     findings: the findings of the rule.
     cause: the rule name and the element that each finding follows from, None for a root finding (findings).
     """
 
     index: Rows
     finding: Rows
-    silent: Mask
     findings: list[Finding]
     cause: list[tuple[str, int] | None]
 
@@ -227,7 +225,6 @@ class Engine:
         if rule.over == "rows" and (cause < 0).any() and (cause >= 0).any():
             self._share_causes(places.blocks(rule.over, self.tables)[index], cause, element)
         finding = np.zeros(len(index), np.int64)
-        silent = np.zeros(len(index), bool)
         findings: list[Finding] = []
         causes: list[tuple[str, int] | None] = []
         for follows in (False, True):
@@ -236,7 +233,6 @@ class Engine:
                 continue
             chosen, group, count = self._merged(rule, index[listed], hits.worst)
             is_silent = self._silenced(rule, index[listed[chosen]])
-            silent[listed] = is_silent[group]
             for quiet in (False, True) if is_silent.any() else (False,):
                 # Cut each list separately: silenced findings must not displace reported ones.
                 groups = np.flatnonzero(is_silent == quiet)
@@ -252,7 +248,7 @@ class Engine:
                     causes.append((self._names[cause[first]], int(element[first])) if has_cause else None)
                 if len(groups) > LISTED:
                     self.unlisted.append(_unlisted(rule, len(groups)))
-        return Listed(index, finding, silent, findings, causes)
+        return Listed(index, finding, findings, causes)
 
     def _silenced(self, rule: Rule, index: Rows) -> Mask:
         """True for the elements that an allow comment silences."""

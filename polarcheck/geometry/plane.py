@@ -57,7 +57,6 @@ class LinesFromCenter(msgspec.Struct, frozen=True):
     before: Floats
     after: Floats
     near: Floats
-    far: Floats
 
     @property
     def has_foot(self) -> Mask:
@@ -73,11 +72,10 @@ def lines_from_center(start: Points, end: Points) -> LinesFromCenter:
     first, last = np.abs(start), np.abs(end)
     # From the end nearer to the center, lest a small d drown in the rounding of large coordinates.
     offset = np.abs(cross(np.where(first <= last, start, end), u))
-    far = np.maximum(first, last)
-    offset[offset <= NOISE * far] = 0
+    offset[offset <= NOISE * np.maximum(first, last)] = 0
     before, after = dot(start, u), dot(end, u)
     near = np.where((before < 0) & (after > 0), offset, np.minimum(first, last))
-    return LinesFromCenter(offset, before, after, near, far)
+    return LinesFromCenter(offset, before, after, near)
 
 
 class ArcsFromCenter(msgspec.Struct, frozen=True):
