@@ -235,6 +235,20 @@ def test_behind_calls_that_run_once_positions_and_variables_are_not_known(own: s
     assert trace.path.z[trace.blocks.line == 6].tolist() == [3.0]
 
 
+def test_what_rests_on_calls_that_run_once_asks_for_more_blocks_and_for_no_variable() -> None:
+    rest = "G12.1\nG1 X[40.+#500] F100.\nC5.\nX60.\nIF[#500EQ4]GOTO10\nX50.\nN10 G13.1\nM30\n"
+    head = "O1\nG98 T0101\nG0 X60. Z2. C0\n#500=1\n"
+    program = f"{head}M98 P100 L5000\nG0 X60. C0\n{rest}O100\n#500=#500+1\nM99\n"
+    report = report_of(program, "fanuc", CUTTER, job=BOUNDED)
+    assert [found.rule for found in report.findings] == ["endless-loop"]
+    reasons = [one.reason for one in report.not_evaluated if one.matters]
+    assert sum("line 5 is run once here; --max-blocks lets it run" in reason for reason in reasons) >= 2
+    moves = f"{head}{rest.replace('[40.+#500]', '40.')}".replace("#500=1\n", "M98 P100 L5000\n") + "O100\nG0 U1.\nM99\n"
+    reasons += [one.reason for one in report_of(moves, "fanuc", CUTTER, job=BOUNDED).not_evaluated if one.matters]
+    assert any("M98 P100 L5000, which is run once here; --max-blocks lets it run" in reason for reason in reasons)
+    assert not any("[run.variables]" in reason or "--subprograms" in reason for reason in reasons)
+
+
 @pytest.mark.nightly
 def test_programs_before_one_that_is_broken_off_keep_all_their_rows() -> None:
     head = "O1\nG0 X60.\n" + "X61.\n" * 40 + "M98 P3 L1500\nM30\n"
@@ -273,3 +287,29 @@ def test_a_bound_in_a_baseline_is_not_evaluated() -> None:
     (file,) = json.loads(result.stdout)["files"]
     assert (file["verdict"], file["findings"]) == ("unverified", [])
     assert [one["reason"].startswith("line 6: END3 is still reached") for one in file["not_evaluated"]] == [True]
+
+
+#: Steps much shorter than R: the tool center runs back in each, but for the corner with the next one.
+STEPS = "G1 G42 X40. F100.\nC5.\nX39.9\nC5.1\nX39.8\nC5.2\n"
+HEAD_OF_STEPS = "O1\nG98 T0101\nG0 X60. C0\nG12.1\n"
+
+
+@pytest.mark.ci
+@looped(
+    ("program", "rules"),
+    [
+        (HEAD_OF_STEPS + STEPS + "M99\n", []),
+        (HEAD_OF_STEPS + STEPS + "M30\n", ["polar-never-left"]),
+        (HEAD_OF_STEPS + STEPS + "X50.\nC9.\nG40 X60.\nG13.1\nM30\n", ["interference"]),
+        (
+            HEAD_OF_STEPS + "#1=0\nG1 G42 X40. F9.\nWHILE[#1LT99]DO1\nC[5.+#1*.1]\nX[40.-#1*.1]\n#1=#1+1\nEND1\nM30\n",
+            ["endless-loop"],
+        ),
+    ],
+)
+def test_the_corner_behind_the_last_move_of_a_section_that_goes_on_elsewhere_is_not_known(
+    program: str, rules: list[str]
+) -> None:
+    for blocks in (50, 51, 52):
+        report = report_of(program, "fanuc-30i", CUTTER, job={"run": {"max_blocks": blocks}})
+        assert [found.rule for found in report.findings] == rules

@@ -122,6 +122,15 @@ def test_a_program_that_calls_itself_and_brackets_without_end_are_one_finding() 
         assert [finding.rule for finding in report_of(program).findings] == ["nesting-too-deep"]
 
 
+def test_a_fault_before_the_mode_belongs_to_no_section() -> None:
+    head, mode = "O1\nG98 T0101\nG0 X60. C0\nM98 P2\nM30\nO2\n", "G12.1\nG1 X40. F100.\nC10.\nG13.1\nG0 C0\n"
+    for body in (f"M98 P2\n{mode}", f"{mode}M98 P2\n"):
+        (found,) = report_of(f"{head}{body}M99\n").findings
+        assert (found.rule, found.section_line) == ("nesting-too-deep", None)
+    (found,) = report_of(head + mode.replace("C10.", "M98 P2\nC10.") + "M99\n").findings
+    assert (found.rule, found.section_line) == ("nesting-too-deep", 7)
+
+
 #: So high that none is reached before the one under test.
 UNBOUNDED = {"max_blocks": 10**9, "max_statements": 10**9, "max_seconds": 1e9}
 

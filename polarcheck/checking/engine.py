@@ -372,6 +372,9 @@ class Engine:
             text += in_call(trace, places.rows(rule.over, self.tables)[hits.mask], element.row)
         block = places.block_text(trace.text, element.block)
         section = int(trace.mode.section[element.row]) if element.row >= 0 else -1
+        enter = int(trace.mode.sections.enter[section]) if section >= 0 else -1
+        if section >= 0 and enter == element.row and trace.run.block[enter] != element.block:
+            enter = -1  # the first row behind the block of a fault, which has none, begins a section
         kind = Undecided if hits.undecided is not None and hits.undecided[element.index] else Finding
         return kind(
             rule=rule.name,
@@ -383,7 +386,7 @@ class Engine:
             end_column=end - int(source.line_starts[end_line - 1]) + 1,
             block=block,
             program=self._program_name(element.block),
-            section_line=int(trace.blocks.line[trace.mode.sections.enter[section]]) if section >= 0 else None,
+            section_line=int(trace.blocks.line[enter]) if enter >= 0 else None,
             alarm=None if is_note else self._alarm(rule, word_list),
             values=values,
             count=count,

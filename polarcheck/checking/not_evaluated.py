@@ -163,7 +163,7 @@ def unexecuted(tables: Tables, *, of_metal: bool = True) -> Iterator[NotEvaluate
     last_switch = _last_switch(trace) if of_metal else len(trace.text.blocks)
     remarks = Counter(
         (
-            reason_of(remark, trace.machine),
+            reason_of(remark, trace.run, trace.machine),
             bool(remark.values.get("matters", True))
             and not _is_done_before(trace, remark)
             and not (remark.block > last_switch and remark.row > trace.mode.sections.leave[-1]),
@@ -269,7 +269,7 @@ def offsets_not_known(trace: Trace) -> tuple[str, int]:
     if not len(rows):
         return "", 0
     setting = f"which offset {block_and_line(trace, int(rows[0]))} sets is not known"
-    return f"{setting}, those in force are taken as given: {of_variables(trace.machine)}", len(rows)
+    return f"{setting}, those in force are taken as given: {of_variables(trace)}", len(rows)
 
 
 def unevaluated(tables: Tables, rule: Rule) -> Iterator[Missing]:

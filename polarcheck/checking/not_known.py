@@ -29,6 +29,8 @@ _Reason: TypeAlias = Callable[[Tables, int], str]
 _OF_VARIABLES = "give its variables as [run.variables] in polarcheck.toml, or write the number"
 #: Variables of other languages have names, and no number for the job.
 _OF_NAMED = "give its variables a value in the program, or write the number"
+#: Of calls that a bound of the check runs once.
+_RUN_WHOLE = "--max-blocks lets it run as often as it says"
 #: Causes, beside the offset numbers, for which a move is not known.
 _DEPTH, _POSITION, _NO_FEED, _FEED_OF_SPINDLE = -4, -3, -2, -1
 #: Variables that are named; more are counted.
@@ -78,9 +80,9 @@ def value_not_known(trace: Trace, variables: Sequence[int | None], word: str) ->
     variables: on which the word, and further words, rest; None for what has no number.
     """
     macro, (variable, *more) = trace.machine.macro, variables
-    if variable is None or macro.language != "custom-macro":
+    if variable is None or macro.language != "custom-macro" or trace.run.blocks_run_once:
         others = f", nor that of {len(more)} more" if more else ""
-        return f"the value of {word} is not known{others}: {of_variables(trace.machine)}"
+        return f"the value of {word} is not known{others}: {of_variables(trace)}"
     if is_argument(trace.machine, variable):
         return f"#{variable} has no value for {word}: it is an argument; check the program that calls this one"
     if not more:
@@ -95,9 +97,11 @@ def is_argument(machine: Machine, variable: int) -> bool:
     return FIRST_VARIABLE <= variable < FIRST_PARAMETER or is_local
 
 
-def of_variables(machine: Machine) -> str:
+def of_variables(trace: Trace) -> str:
     """The remedy where a value is not known."""
-    return _OF_VARIABLES if machine.macro.language == "custom-macro" else _OF_NAMED
+    if blocks := trace.run.blocks_run_once:
+        return f"line {int(trace.text.blocks.line[min(blocks)])} is run once here; {_RUN_WHOLE}"
+    return _OF_VARIABLES if trace.machine.macro.language == "custom-macro" else _OF_NAMED
 
 
 def _no_offset(what: str, key: str, of_program: Callable[[Trace], Rows] | None = None) -> _Reason:
@@ -107,7 +111,7 @@ def _no_offset(what: str, key: str, of_program: Callable[[Trace], Rows] | None =
         trace: Trace = tables["trace"]
         number = int(trace.tools.offset_number[row])
         if trace.tools.is_unknown[row]:
-            return f"no {what}: which tool offset is in force is not known; {of_variables(trace.machine)}"
+            return f"no {what}: which tool offset is in force is not known; {of_variables(trace)}"
         if not number:
             how = example(trace.machine)
             return f"no {what}: no tool offset is in force; call one before the polar mode, as in {how}"
@@ -125,7 +129,7 @@ def _not_known_from_program(trace: Trace, row: int, setter: int, what: str, key:
     missing = f"no {what} for offset {offset(trace.tools, row)}"
     if unknown >= 0:
         block = block_and_line(trace, unknown)
-        return f"{missing}: {block} sets it to a value that is not known; {of_variables(trace.machine)}"
+        return f"{missing}: {block} sets it to a value that is not known; {of_variables(trace)}"
     setting = block_and_line(trace, setter)
     return f"{missing}: {setting} sets wear or a difference alone; {to_give(trace.tools, trace.machine, row, key)}"
 
@@ -140,7 +144,7 @@ def _position(tables: Tables, row: int) -> str:
         # A corner hangs on the block behind it.
         nearest = int(unknown[min(int(np.searchsorted(unknown, row)), len(unknown) - 1)])
         block = block_and_line(trace, nearest)
-        return f"the way is not known: {block} leaves open how the tool goes; {of_variables(trace.machine)}"
+        return f"the way is not known: {block} leaves open how the tool goes; {of_variables(trace)}"
     open_ends = np.flatnonzero(trace.mode.in_polar & np.isnan(trace.path.end) & ~np.isnan(trace.path.start))
     at_or_before = open_ends[open_ends <= row]
     if not np.isnan(trace.path.end[row]) and (open_ends > row).any():
@@ -149,7 +153,7 @@ def _position(tables: Tables, row: int) -> str:
         row = int(at_or_before[-1])
     if row in open_ends and not trace.run.unknown[row]:
         block = block_and_line(trace, row)
-        return f"the position is not known: {block} leaves open where the tool goes; {of_variables(trace.machine)}"
+        return f"the position is not known: {block} leaves open where the tool goes; {of_variables(trace)}"
     lost = np.flatnonzero((trace.run.unknown & (trace.blocks.program == trace.blocks.program[row]))[: row + 1])
     if not len(lost):
         axis = chr(trace.axes.linear_axis[row])
@@ -168,8 +172,10 @@ def _position(tables: Tables, row: int) -> str:
 
 def _after_unexecuted(trace: Trace, row: int, axes: str) -> str:
     written = f"line {int(trace.blocks.line[row])}, {block_in_line(trace.run, row, _BLOCK_LENGTH)}"
-    remedy = f"--subprograms FOLDER says where called programs lie, or program {axes} after it"
-    return f"is not known after {written}, which is not executed; {remedy}"
+    how, remedy = "not executed", "--subprograms FOLDER says where called programs lie"
+    if int(trace.run.block[row]) in trace.run.blocks_run_once:
+        how, remedy = "run once here", _RUN_WHOLE
+    return f"is not known after {written}, which is {how}; {remedy}, or program {axes} after it"
 
 
 def angles_not_known(trace: Trace) -> Iterator[tuple[str, int]]:
@@ -191,7 +197,7 @@ def angles_not_known(trace: Trace) -> Iterator[tuple[str, int]]:
 
 def _origin(tables: Tables, row: int) -> str:
     causes = " and ".join(tables["entry"].origin.unknown_causes(row))
-    remedy = of_variables(tables["trace"].machine)
+    remedy = of_variables(tables["trace"])
     return f"where X0 lies is not known: {causes} sets X to a value that is not known; {remedy}"
 
 
@@ -200,7 +206,7 @@ def _feed(tables: Tables, row: int) -> str:
     written = np.flatnonzero(trace.blocks.has("F")[: row + 1])
     if len(written) and trace.blocks.is_unknown("F")[written[-1]]:
         block = block_and_line(trace, int(written[-1]))
-        return f"the feed is not known: F in {block} rests on a variable; {of_variables(trace.machine)}"
+        return f"the feed is not known: F in {block} rests on a variable; {of_variables(trace)}"
     if trace.feedrate.per_minute[row]:
         return "the feed is not known: no F is in force; write one before the cutting move"
     codes = " or ".join(trace.machine.codes("feed_per_minute"))

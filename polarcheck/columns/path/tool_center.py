@@ -11,13 +11,16 @@ import numpy as np
 from polarcheck.columns.path.infeed import Infeed
 from polarcheck.columns.path.moves import Moves, compensation_path, of_tool, per_row, tool_center_path
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, cached_property
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, cached_property, last_in_run
 from polarcheck.foundation.states import Motion, Side
 from polarcheck.geometry.cutter_compensation.offset_path import Path, ToolPath
+from polarcheck.geometry.plane_path import PlanePath
 from polarcheck.geometry.tolerances import SHARE
 
 #: The share of R that must fit beside a stretch of many blocks for their rounding to be what is wrong.
 _SURELY = 7 / 8
+#: Columns of a ToolPath that have an element for each move, beside those of PlanePath.
+_PER_MOVE = "row", "phase", "corner", "known"
 
 
 class OtherRadius(msgspec.Struct, frozen=True):
@@ -68,7 +71,22 @@ class ToolCenter:
 
     @cached_property
     def _path(self) -> ToolPath:
-        return tool_center_path(self.trace, self._programmed)
+        """Without the last move of a section that goes on elsewhere, where it ran back: its end hangs on the next."""
+        path = tool_center_path(self.trace, self._programmed)
+        open_ends = path.interferes & self._goes_on_elsewhere[self._rows] if path.interferes.any() else path.interferes
+        if not open_ends.any():
+            return path
+        kept = ~open_ends[path.row]
+        moves = {name: getattr(path, name)[kept] for name in (*PlanePath.__struct_fields__, *_PER_MOVE)}
+        return msgspec.structs.replace(path, **moves, interferes=path.interferes & ~open_ends)
+
+    @property
+    def _goes_on_elsewhere(self) -> Mask:
+        """The last move of each section that no G13.1 of this program leaves."""
+        trace, sections = self.trace, self.trace.mode.sections
+        is_open = np.append(~sections.left | sections.returned, False)
+        rows = np.flatnonzero(trace.path.on_plane & is_open[trace.mode.section])
+        return trace.blocks.mask_of(rows[last_in_run(trace.mode.section[rows])])
 
     @cached_property
     def moves(self) -> Moves:

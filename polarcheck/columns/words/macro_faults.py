@@ -59,6 +59,8 @@ RULES: Final[Mapping[str, str]] = {kind: rule for rule, kinds in _KINDS_OF.items
 #: The rule that reports a program that never ends, and one that was broken off at a bound.
 ENDLESS_LOOP = "endless-loop"
 _BOUNDS = ("too-many-blocks", "too-many-statements", "runs-too-long", "too-many-repeats")
+#: What a condition that is not known may end.
+_LOOPS = ("nothing-changes", *_BOUNDS[:-1])
 #: So many missing programs are reported one by one: more are missing for one reason, as a folder that nobody has given.
 _ONE_BY_ONE = 5
 #: Spans of their numbers in a message.
@@ -168,7 +170,7 @@ class Faults:
         one_reason = len(self._missing) > _ONE_BY_ONE
         for fault in self.run.faults:
             rule = RULES[fault.kind]
-            if rule == ENDLESS_LOOP and self._program(fault.block) in self._undecided:
+            if fault.kind in _LOOPS and self._program(fault.block) in self._undecided:
                 rules.append("")  # what is not known may end it: that is told as not evaluated
                 continue
             program: object = fault.values.get("program", fault.start)
@@ -250,9 +252,9 @@ class Faults:
         return text if self._macro.language == "custom-macro" else text.replace("macro statement", "statement")
 
 
-def reason_of(remark: Remark, machine: Machine) -> str:
+def reason_of(remark: Remark, run: Run, machine: Machine) -> str:
     """Why something was not executed, in words."""
-    variables = _VARIABLES if machine.macro.language == "custom-macro" else ""
+    variables = _VARIABLES if machine.macro.language == "custom-macro" and not run.blocks_run_once else ""
     return _REMARKS[remark.kind].format_map({"variables": variables, **remark.values})
 
 

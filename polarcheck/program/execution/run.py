@@ -160,6 +160,11 @@ class Run(msgspec.Struct, frozen=True):
         """Executed blocks; a corner that the control makes is none."""
         return len(self) - (0 if self.corners is None else len(self.corners.row))
 
+    @property
+    def blocks_run_once(self) -> set[int]:
+        """The blocks whose calls are more than a check executes, so that they are run once."""
+        return {fault.block for fault in self.faults if fault.kind == "too-many-repeats"}
+
     def written(self, index: int) -> str:
         """An executed word as it stands in the file, with the name that is read as its letter: `POS[C]=0`, `CR=5.`."""
         start, source = int(self.words.start[index]), self.text.source

@@ -70,5 +70,6 @@ def read(path: str, data: bytes, settings: Settings) -> Original:
         if remark.kind in BLOCKS_NOT_KNOWN and (is_left_on or remark.kind != "return-jumps")
     ]
     if not_known:
-        raise RefusedError([Refusal(int(lines[remark.block]), reason_of(remark, machine)) for remark in not_known])
+        reasons = [Refusal(int(lines[remark.block]), reason_of(remark, trace.run, machine)) for remark in not_known]
+        raise RefusedError(reasons)
     return original

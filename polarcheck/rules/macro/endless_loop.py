@@ -14,11 +14,12 @@ def endless_loop(faults: Faults) -> Hits:
     """
     Program that never ends.
 
-    A jump or loop that comes back with nothing changed is an error: the machine repeats it until it is reset. A program
-    that the check itself has stopped executing is a warning: it may be sound, and end later.
+    A jump or loop that comes back with nothing changed is an error, since the machine repeats it until it is reset; one
+    that only outlasts the bounds of this check is a warning: it may be sound, and end later.
 
     The check stops after so many blocks or statements beyond those of the file itself, and after so many seconds
-    (--max-blocks, --max-statements, --max-seconds). What comes behind that is not checked, and the file is unverified.
+    (--max-blocks, --max-statements, --max-seconds). What comes behind that is not checked, and the file is unverified,
+    not failed, if nothing else is wrong.
     Of a program that is called more often than --max-blocks, one run is checked; positions and variables after it are
     not known.
 
