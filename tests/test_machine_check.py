@@ -246,7 +246,7 @@ def test_the_short_file_has_ten_questions_whose_answers_count(name: str) -> None
         (("check",), "machines check: expected the FILE"),
         (("new",), "machines new: expected the NAME of the new lathe"),
         (("check", "gone.toml"), "machine gone.toml: no such file"),
-        (("check", "fanuk"), "unknown machine 'fanuk'; did you mean fanuc?; `polarcheck machines` lists them"),
+        (("check", "fanuk"), "unknown machine 'fanuk'; did you mean fanuc?"),
         (("fanuc", "--from", "fanuc-30i"), "--from is for `machines new LATHE`"),
         (("check", "fanuc", "--from", "fanuc-30i"), "--from is for `machines new LATHE`"),
         (("show", "fanuc"), "fanuc: a second name is for `machines new LATHE` and `machines check FILE`"),

@@ -48,6 +48,31 @@ def test_the_message_says_what_to_write(line: str, hint: str) -> None:
     assert str(caught.value).endswith(f"; {hint}")
 
 
+@looped(
+    ("text", "key"),
+    [("[tools.8]\nradius = 8.0\n[tools.8]\n", "tools.8"), ("[tools.8]\nradius = 8.0\nradius = 7.0\n", "radius")],
+)
+def test_what_stands_twice_is_named(text: str, key: str) -> None:
+    with pytest.raises(ValueError, match="at line 3") as caught:
+        parsed(text)
+    assert str(caught.value).endswith(f"; {key} stands above, too: keep one of both")
+
+
+@looped(
+    ("table", "hint"),
+    [
+        ({"run": {"subprograms": "subs"}}, "found 'subs'; write [\"subs\"]"),
+        ({"exclude": "a\\*"}, "found 'a\\\\*'; write ['a\\*']"),
+        ({"programs": {"files": ["O12*"]}}, "found a table; write [[programs]]"),
+        ({"stock": {"diameter": 60.0, "hexagon": 40.0}}, "polarcheck.toml: stock: give diameter or hexagon, not both"),
+    ],
+)
+def test_of_other_values_the_form_is_named(table: dict[str, object], hint: str) -> None:
+    with pytest.raises(JobError) as caught:
+        from_table(table, "polarcheck.toml")
+    assert str(caught.value).endswith(hint)
+
+
 @looped("line", ["radius = 3/0", "radius = 4 ..", "radius = .", "radius = 1.5 x", "radius = 1,234.5"])
 def test_of_what_is_no_number_nothing_is_said(line: str) -> None:
     with pytest.raises(ValueError, match="at line 2") as caught:

@@ -204,7 +204,8 @@ def _find(name: str, folder: Path) -> tuple[Path, str]:
         return path, str(path)
     if name.endswith(".toml"):
         raise UnknownMachineError(f"machine {name}: no such file")
-    raise UnknownMachineError(f"unknown machine {name!r}{suggestion(name, names())}; `polarcheck machines` lists them")
+    near = suggestion(name, names()) or "; `polarcheck machines` lists them"
+    raise UnknownMachineError(f"unknown machine {name!r}{near}")
 
 
 def machine_id(name: str) -> str:

@@ -100,6 +100,9 @@ def _hint(text: str, said: str) -> str:
         return "; write / between folders, or the text in single quotes"
     number = re.search(r"\bline (\d+)", said)
     line = text.split("\n")[min(int(number[1]), text.count("\n") + 1) - 1] if number else ""
+    if "twice" in said or "overwrite" in said:
+        key = line.partition("=")[0].strip("[] \t")
+        return f"; {key[:_SHOWN]} stands above, too: keep one of both"
     if bit := re.match(_BIT, line):
         return f'; write "{bit[1]}" in quotes: # begins a comment'
     if bare := _BARE.match(line):

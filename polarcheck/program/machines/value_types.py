@@ -143,11 +143,11 @@ def _of_dict(part: _Part, kind: Any) -> Iterator[MisfitError]:
 
 def _misfit(part: _Part, error: Exception | None = None) -> MisfitError:
     if isinstance(part.value, Mapping) and error is not None and isinstance(error.__cause__, ValueError):
-        text = _plain(error)  # the message of the type
+        text = _plain(error).removeprefix(f"{part.key}: ")  # the message of the type
         if isinstance(error.__cause__, KeyedError) and error.__cause__.key:
             part = msgspec.structs.replace(part, key=_below(part.key, error.__cause__.key))
     else:
-        text = f"expected {_expected(part.kind)}{_beyond(part)}, found {display(part.value)}{_as_number(part)}"
+        text = f"expected {_expected(part.kind)}{_beyond(part)}, found {display(part.value)}{_advice(part)}"
     return MisfitError(part.key, f"{part.key}: {text}" if part.key else text)
 
 
@@ -238,7 +238,11 @@ def display(value: Any) -> str:
     return text if len(text) <= _LONGEST else f"{text[:_LONGEST]}..."
 
 
-def _as_number(part: _Part) -> str:
-    """The advice for a text that was given as a number."""
-    is_text = _bare(part.kind) is float and isinstance(part.value, str)
-    return number_hint(part.value) if is_text else ""
+def _advice(part: _Part) -> str:
+    """How to write a number that was given as a text, and one value or table where a list is expected."""
+    kind, value = _bare(part.kind), part.value
+    if get_origin(kind) is list and isinstance(value, Mapping):
+        return f"; write [[{part.key}]]"
+    if get_origin(kind) is list and isinstance(value, str) and len(value) <= _LONGEST:
+        return f'; write ["{value}"]' if "\\" not in value else f"; write ['{value}']"
+    return number_hint(value) if kind is float and isinstance(value, str) else ""
