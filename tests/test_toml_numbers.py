@@ -25,6 +25,7 @@ from polarcheck.program.machines.toml_text import parsed
         ('radius = 3/16"', 'write 0.1875, without "'),
         ("radius = 4.5 mm", "write 4.5, without mm"),
         ("radius = 4mm", "write 4, without mm"),
+        ("c_feed = 3600 deg/min", "write 3600, without deg/min"),
         ("radius = 08", "write 8"),
         ("a = { radius = .5, nose = 0 }", "write 0.5"),
         ("a = [1.5, 4., 3]", "write 4.0"),

@@ -31,7 +31,7 @@ _LONG_NUMBER = lazy_pattern(r"(?<![\d_])\d[\d_]{1000,}+")
 #: 3401#0, the bit of a parameter, as a key without quotes.
 _BIT = r"^[ \t]*+(\w{1,20}#\w{1,20})[ \t]*+="
 
-_UNIT = r"[ \t]*+(mm|inches|inch|in|deg|°|\"|''|[”″])?[ \t]*+"
+_UNIT = r"[ \t]*+((?:mm|deg|1)/min|mm|inches|inch|in|deg|°|\"|''|[”″])?[ \t]*+"
 #: 1,5 for 1.5, be it with a unit behind it.
 _COMMA = lazy_pattern(rf"=[ \t]*+([-+]?)(\d{{0,9}}+),(\d{{1,9}}+){_UNIT}(?:#.*)?$", re.IGNORECASE)
 #: .5, 4., 08, 3/16 and 1 3/16 as a value, be it with a unit behind it.
