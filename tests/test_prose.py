@@ -371,3 +371,8 @@ def test_where_statements_have_names_text_is_one_of_them_and_told_as_such(machin
     report = report_of("G0 X50. RAPID TO START\nM30\n", machine)
     assert not [found for found in report.findings if found.rule == RULE]
     assert report.verdict != "pass"
+
+
+def test_tags_alone_are_shown_as_they_stand() -> None:
+    (found,) = report_of("<html><body>\nG0 X50.\nM30\n</body></html>\n").findings
+    assert (found.rule, "first `<html><body>`" in found.message) == (RULE, True)

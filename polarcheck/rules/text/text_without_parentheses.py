@@ -81,11 +81,11 @@ def details(hit: Hit, text: Text, written: Written) -> Details:
     from polarcheck.rules.wording.written import short
 
     spans = zip(text.prose.start[hit.index :].tolist(), text.prose.end[hit.index :].tolist(), strict=True)
-    texts = (
-        re.sub(r"</?\w[^<>\n]*+>", " ", text.source.excerpt(start, min(end, start + _LOOKED_AT))).strip(_LINES)
-        for start, end in itertools.islice(spans, _LOOKED_AT)
-    )
-    first = short(next((each for each in texts if re.search(r"[^\W\d_]{2}", each)), ""))
+    written_texts = [
+        text.source.excerpt(start, min(end, start + _LOOKED_AT)) for start, end in itertools.islice(spans, _LOOKED_AT)
+    ]
+    texts = (re.sub(r"</?\w[^<>\n]*+>", " ", each).strip(_LINES) for each in written_texts)
+    first = short(next((each for each in texts if re.search(r"[^\W\d_]{2}", each)), written_texts[0]))
     count = int(written.prose_count[hit.index])
     where = f" in {count} blocks, first" if count > 1 else ":"
     what = "a description copied with the program: " if count >= _DESCRIPTION else ""
