@@ -437,7 +437,7 @@ def test_exit_codes(pair: Path) -> None:
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (("old.nc",), "expected OLD and NEW, found 1 paths"),
+        (("old.nc",), "expected OLD and NEW, found 1 path"),
         (("old.nc", "."), "expected two programs or two folders"),
         (("-", "-"), "- can stand for one of the two programs only"),
         (("old.nc", "gone.nc"), "gone.nc: "),

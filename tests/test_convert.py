@@ -681,6 +681,13 @@ def call(*arguments: str) -> Result:
     return CliRunner().invoke(main, ["convert", *arguments])
 
 
+@pytest.mark.usefixtures("own_folder")
+def test_the_lathe_of_the_program_is_named_as_in_other_commands_too() -> None:
+    Path("a.nc").write_text(HEXAGON)
+    done = call("a.nc", "--machine", "takisawa", "--to", "okuma-osp", "--tool", "3:radius=4")
+    assert (done.exit_code, done.stdout) == (0, OKUMA)
+
+
 @pytest.mark.nightly
 @pytest.mark.usefixtures("own_folder")
 def test_the_command_writes_says_what_is_to_be_decided_and_ends_with_its_code() -> None:

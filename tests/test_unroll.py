@@ -268,6 +268,7 @@ def test_c_counts_on_over_full_turns_or_rolls_over() -> None:
     text, said = unrolled(program)
     assert "\nC180. F572.95\nC360.\nC540.\nC720.\n" in text.replace("G1 C", "C")
     assert "line 9: C has turned on by 2 turns, to 720 deg" in said
+    assert "C has turned on by 1 turn, to 360 deg" in unrolled(program.replace("G3 X40. C0 I-20. J0\n", "", 1))[1]
     assert "that it does not roll over there is in doubt" in said
     rolls, said = unrolled(program, *METHODS["per-minute"], "--set", "control.rotary_rolls_over=true")
     assert "\nC120. F572.95\nC240.\nC0\nC120.\nC240.\nC0\n" in rolls.replace("G1 C", "C")

@@ -10,7 +10,7 @@ import click
 
 from polarcheck.commands import options
 from polarcheck.commands.options import option
-from polarcheck.foundation.errors import PolarcheckError, TooHardError, UsageError
+from polarcheck.foundation.errors import PolarcheckError, TooHardError, UsageError, counted
 
 if TYPE_CHECKING:
     from polarcheck.commands.running import Faults
@@ -136,7 +136,7 @@ def _arguments(paths: Sequence[str], named: str, is_git: bool) -> _Pair:
             raise UsageError(f"--git: expected the {_GIT_ARGUMENTS} arguments that git gives, found {len(paths)}")
         return _Pair(paths[1], paths[4], named or paths[0])
     if len(paths) != 2:
-        raise UsageError(f"compare: expected OLD and NEW, found {len(paths)} paths")
+        raise UsageError(f"compare: expected OLD and NEW, found {counted(len(paths), 'path')}")
     return _Pair(paths[0], paths[1], named)
 
 

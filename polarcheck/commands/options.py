@@ -224,7 +224,7 @@ machine, extensions, exclude = map(setting, ("machine", "extensions", "exclude")
 color = option("--color", type=click.Choice(["auto", "always", "never"]), default="auto", show_default=True)
 text_or_json = narrower("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
 machine_from = option(
-    "--from", "machine", metavar="NAME|FILE",
+    "--from", "--machine", "machine", metavar="NAME|FILE",
     help="The lathe that the program is for: one of `polarcheck machines`, or a TOML file of your own.",
 )  # fmt: skip
 no_config = option("--no-config", is_flag=True, help="Read no polarcheck.toml or pyproject.toml.")

@@ -10,6 +10,7 @@ from polarcheck.columns.path.moves import Moves
 from polarcheck.columns.path.tool_center import ToolCenter
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Floats, Mask, Rows, mask_at
+from polarcheck.foundation.errors import counted
 from polarcheck.foundation.states import FeedMode, Motion
 from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.straight_axes.spiral_pieces import along, distances
@@ -102,7 +103,7 @@ def _wound_up(old: Trace, run: _Run, steps: Steps) -> Iterator[str]:
         worst = int(np.argmax(np.abs(turned)))
         index = int(last[worst])
         yield (
-            f"line {_line(old, steps, index)}: C has turned on by {abs(turned[worst]):.0f} turns, to "
+            f"line {_line(old, steps, index)}: C has turned on by {counted(int(abs(turned[worst])), 'turn')}, to "
             f"{run.c[index]:g} deg: positioning it turns it back"
         )
 
