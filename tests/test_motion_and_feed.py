@@ -198,6 +198,13 @@ def test_why_the_rate_of_c_is_not_known() -> None:
         ("the position is not known: X was not programmed before the polar mode; write G0 X... before it", 1),
         ("the feed is not known: no F is in force; write one before the cutting move", 1),
     ]
+    called = reasons(report("G12.1\nG1 G42 X40. C10. F200\nC5.\nG40 X60.\nG13.1\nM99\n", limits=limits))
+    assert [reason for reason, _ in called] == [
+        "the position is not known: X was not programmed before the polar mode; check the program that calls this one, "
+        "or write G0 X... before it",
+        "no radius: no tool offset is in force; check the program that calls this one, or call one before the polar "
+        "mode, as in T0808",
+    ]
     missing = report(ENTRY + "G1 C10.\n", limits=limits)
     assert (said(missing), reasons(missing)) == ([(4, "feed-missing-in-polar")], [])
 

@@ -113,8 +113,8 @@ def _no_offset(what: str, key: str, of_program: Callable[[Trace], Rows] | None =
         if trace.tools.is_unknown[row]:
             return f"no {what}: which tool offset is in force is not known; {of_variables(trace)}"
         if not number:
-            how = example(trace.machine)
-            return f"no {what}: no tool offset is in force; call one before the polar mode, as in {how}"
+            remedy = f"call one before the polar mode, as in {example(trace.machine)}"
+            return f"no {what}: no tool offset is in force; {_of_caller(trace, row)}{remedy}"
         setter = int(of_program(trace)[row]) if of_program else -1
         if setter >= 0:
             return _not_known_from_program(trace, row, setter, what, key)
@@ -164,10 +164,15 @@ def _position(tables: Tables, row: int) -> str:
         if loses[: row + 1].any():
             setting = block_and_line(trace, int(np.flatnonzero(loses[: row + 1])[-1]))
             return f"the position is not known: {setting} leaves open where {axis} stands; write G0 {axis}... after it"
-        return (
-            f"the position is not known: {axis} was not programmed before the polar mode; write G0 {axis}... before it"
-        )
+        missing = f"the position is not known: {axis} was not programmed before the polar mode"
+        return f"{missing}; {_of_caller(trace, row)}write G0 {axis}... before it"
     return f"the position {_after_unexecuted(trace, int(lost[-1]), f'X and {trace.machine.polar.rotary_address}')}"
+
+
+def _of_caller(trace: Trace, row: int) -> str:
+    """What else to do about a program that M99 leaves: its caller may say what it does not."""
+    returns = trace.blocks.codes(*trace.machine.macro.program_returns) & (trace.run.depth == 0)
+    return "check the program that calls this one, or " if trace.blocks.anywhere_in_program(returns)[row] else ""
 
 
 def _after_unexecuted(trace: Trace, row: int, axes: str) -> str:
