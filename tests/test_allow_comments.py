@@ -218,6 +218,8 @@ def test_names_and_reason(words: str, names: list[str], reason: str) -> None:
         ("POLARCHECK ALLOW ALL", [], "there is no allow for everything"),
         ("POLARCHECK ALLOW RAPID-IN-POLR X", [], "RAPID-IN-POLR; did you mean RAPID-IN-POLAR?"),
         ("POLARCHECK ALLOW RAPID-IN-POL", [], "did you mean RAPID-IN-POLAR?"),
+        ("POLARCHECK ALLOW RAPID IN POLAR PROVEN", [], "a name has hyphens: write RAPID-IN-POLAR"),
+        ("POLARCHECK ALLOW RAPID, IN POLAR", [], "there is no rule or group RAPID; did you mean"),
         ("POLARCHECK ALLOW PS0146 X", [], "no rule or group PS0146"),
         ("POLARCHECK ALLOW BECAUSE IT WORKS", [], "no rule or group BECAUSE"),
         ("POLARCHECK ALLOW OVERCUT, PROVEN", ["overcut"], "no rule or group PROVEN"),

@@ -71,7 +71,7 @@ def read_allow(comment: str, known: Collection[str], guesses: bool = True) -> Al
     if not names and not unknown and word != OFF:
         return Allow(word, fault=f"no rule is named, and there is no allow for everything: write {EXAMPLE}")
     return Allow(
-        word, names, reason, "; ".join(_unknown_name(name, known, guesses) for name in unknown[:_MOST_UNKNOWN])
+        word, names, reason, "; ".join(_unknown_name(name, reason, known, guesses) for name in unknown[:_MOST_UNKNOWN])
     )
 
 
@@ -107,11 +107,16 @@ def _is_like(name: str, known: Collection[str], guesses: bool) -> bool:
     return guesses and bool(difflib.get_close_matches(name, known, 1, _LIKE))
 
 
-def _unknown_name(name: str, known: Collection[str], guesses: bool) -> str:
+def _unknown_name(name: str, reason: str, known: Collection[str], guesses: bool) -> str:
     if not name:
         return "a name is missing behind the comma: only names stand between commas"
     if name == "all":
         return f"there is no allow for everything: name the rules, as in {EXAMPLE}"
+    words = f"{'-'.join((name, *reason.lower().split()))}-"
+    if with_blanks := max(
+        (rule for rule in known if "-" in rule and words.startswith(f"{rule}-")), key=len, default=""
+    ):
+        return f"a name has hyphens: write {with_blanks.upper()}"
     near = suggestion(name, [rule.upper() for rule in known]) if guesses else ""
     near = near or "; `polarcheck rules` lists them"
     return f"there is no rule or group {shortened(name.upper(), _SHOWN)}{near}"
