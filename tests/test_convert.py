@@ -17,7 +17,7 @@ import pytest
 import shapely
 from cases import looped
 from click.testing import CliRunner, Result
-from programs import CORPUS
+from programs import CORPUS, report_of
 from setter_programs import FAMILIES, drawn
 from test_every_machine import HANDS
 from twin_sections import CONTROLS, OUT, Section, written
@@ -686,6 +686,8 @@ def test_the_lathe_of_the_program_is_named_as_in_other_commands_too() -> None:
     Path("a.nc").write_text(HEXAGON)
     done = call("a.nc", "--machine", "takisawa", "--to", "okuma-osp", "--tool", "3:radius=4")
     assert (done.exit_code, done.stdout) == (0, OKUMA)
+    before, after = report_of(HEXAGON, "takisawa").blocks, report_of(OKUMA, "okuma-osp").blocks
+    assert f"blocks before: {before}\npolarcheck: a.nc: blocks after: {after}\n" in done.stderr
 
 
 @pytest.mark.nightly

@@ -92,8 +92,8 @@ def converted(original: Original, target: Settings, accepted: Container[str] = (
         data, origin = with_edits(original, edits)
         decisions += [Decision(order.line, order.text) for order in open_orders]
     figures = [
-        Figure("blocks before", float(len(trace.text.blocks))),
-        Figure("blocks after", float(len(result.new.trace.text.blocks))),
+        Figure("blocks before", float(trace.run.block_count)),
+        Figure("blocks after", float(result.new.trace.run.block_count)),
         Figure("largest distance of the tool center paths", result.deviation, "mm"),
     ]
     notes = [f"line {doubt.line}: {said(doubt)}: accepted" for doubt in in_doubt]
