@@ -823,6 +823,115 @@ def test_a_program_that_is_called_and_not_there_is_named() -> None:
     assert "line 5: O9001 is not in the file: convert it, too" in notes
 
 
+# ---- tools, names and programs as posts write them ----
+
+MILLED_WITH_M6 = """\
+G21 G90 G94 G40
+T05.05
+M6
+M200
+G97 S1800 M3
+T07
+G0 X60. Z5. C0.
+G17 XC
+G12.1
+G1 X40. C0. F220.
+C9.
+X60.
+G13.1
+T07.07 T09 M6
+M30
+"""
+
+
+@pytest.mark.ci
+@looped(
+    ("target", "calls"),
+    [
+        ("fanuc-30i", ["T0505", "T0707"]),
+        ("haas-lathe", ["T0505", "T0707"]),
+        ("siemens-transmit", ["T5 D1", "T7 D1"]),
+        ("fagor-8055t", ["T5 D5", "T7 D7"]),
+        ("okuma-osp", ["T0505", "T0707"]),
+    ],
+)
+def test_the_tool_is_called_where_m6_takes_it(target: str, calls: list[str]) -> None:
+    """What T prepares for a later M6 calls nothing there, and a note says so."""
+    outcome = convert(MILLED_WITH_M6, "mazak-integrex", target, "5:radius=4")
+    assert re.findall(r"^T\d+(?: D\d)?", outcome.data.decode(), re.MULTILINE) == calls
+    assert [note.partition(" is left")[0] for note in outcome.notes if " T0" in note] == [
+        "line 2: T05.05",
+        "line 6: T07",
+        "line 14: T09",
+    ]
+
+
+@pytest.mark.ci
+@looped(
+    ("target", "call"),
+    [("fanuc-30i", "T0303"), ("okuma-osp", "T030303"), ("siemens-transmit", "T3 D1"), ("haas-lathe", "T0303")],
+)
+def test_t_and_d_of_a_fagor_call_one_tool(target: str, call: str) -> None:
+    program = "G90 G71 G94 G40\nT3 D3 M6\nG0 X60 Z2 C0\nG16 XC\nG1 G42 X15 F200\nC10\nX-15\nG40 X-22\nG18\nM30\n"
+    assert call in convert(program, "fagor-8055t", target, "3:radius=4").data.decode().splitlines()
+    text = convert(program.replace("D3", "D4").replace("G42 ", ""), "fagor-8055t", target).data.decode()
+    assert "D4: NOTHING SAYS WHAT IT IS" in text
+
+
+@pytest.mark.ci
+@looped(("target", "names"), [("fanuc-30i", "({})"), ("siemens-transmit", "; {}"), ("haas-lathe", "({})")])
+def test_names_of_sequences_become_comments(target: str, names: str) -> None:
+    """NAT01 is no number to another control, and a Siemens would call a program of that name."""
+    program = "O1\nNAT1\nG50 S2500\nNA G94 G0 X60 Z2 C0\nNB G137 C0\nNC G101 X20 F200\nX30\nNEND G136\nM2\n"
+    text = convert(program, "okuma-osp", target).data.decode()
+    assert [re.findall(rf"^.*\b{name}\b.*$", text, re.MULTILINE) for name in ("NAT1", "NC")] == [
+        [names.format("NAT1")],
+        [line for line in text.splitlines() if line.endswith(names.format("NC"))],
+    ]
+    assert convert(program, "okuma-osp", "okuma-osp").data.decode() == program
+
+
+@pytest.mark.ci
+def test_a_limit_of_the_spindle_speed_stays_in_whatever_language() -> None:
+    program = "O1\nG50 S2500\nG94 G0 X60 Z2 C0\nG137 C0\nG101 X20 F200\nX30\nG136\nM2\n"
+    assert "G50 S2500 (DECIDE: S2500: GIVE THE LIMIT" in convert(program, "okuma-osp", "fanuc-30i").data.decode()
+
+
+@pytest.mark.ci
+def test_nothing_stands_beside_the_head_of_a_program_of_an_archive() -> None:
+    program = "%\nO3 (MAIN)\nG21 G98 G40\nT0101\nG0 X60. Z2. C0\nG12.1\nM98 P4\nG13.1\nM30\nO4(FLAT)\n"
+    program += "G1 X40. C5. F200\nX60. C0\nM99\n%\n"
+    text = convert(program, "fanuc-30i", "siemens-transmit").data.decode()
+    assert text.startswith("%_N_O3_MPF\n; MAIN\n")
+    assert "\n%_N_L4_SPF\n; FLAT\n" in text
+
+
+@pytest.mark.ci
+@looped("target", ["fanuc-30i", "siemens-iso", "okuma-osp"])
+def test_programs_that_are_called_by_one_without_a_number_go_there_and_back(target: str) -> None:
+    program = SIEMENS + "DIAMOF\nTRANSMIT\nG17\nL10\nTRAFOOF\nDIAMON\nM30\n%_N_L10_SPF\nG1 X20 Y5 F200\nX30 Y0\nM17\n"
+    there = convert("%_N_SHAFT_MPF\n" + program, "siemens-transmit", target)
+    words = {"okuma-osp": ("CALL O10", "RTS")}.get(target, ("M98 P10", "M99"))
+    assert all(f"\n{word}\n" in there.data.decode() for word in words)
+    assert not any("is not in the file" in note for note in there.notes)
+    back = convert(there.data, target, "siemens-transmit").data.decode()
+    assert "\nL10\n" in back
+    assert "\n%_N_L10_SPF\n" in back
+
+
+@pytest.mark.ci
+@pytest.mark.usefixtures("own_folder")
+@looped("command", [["convert", "--to", "haas-lathe"], ["unroll"], ["roll"], ["compensate", "--center"]])
+def test_a_program_of_another_file_is_named_and_not_written(command: list[str]) -> None:
+    """Its text would stand behind the % of the result, where no control reads it."""
+    Path("called").mkdir(exist_ok=True)
+    Path("called/O4.nc").write_text("O4\nG1 X40. C5. F200\nX60. C0\nM99\n")
+    Path("main.nc").write_text("%\nO3\nG21 G98 G40\nT0101\nG0 X60. Z2. C0\nG12.1\nM98 P4\nG13.1\nM30\n%\n")
+    result = CliRunner().invoke(main, [*command, "--machine", "fanuc-30i", "--subprograms", "called", "main.nc"])
+    assert result.exit_code == 2
+    assert "O4.nc: it calls a program that stands in another file: put both into one file" in result.output
+
+
 # ---- values in doubt ----
 
 MILLED_AT_30 = "%\nO1\nG21 G98 G40\nT0101\nG0 X60. Z2. C30.\nG12.1\nG1 X36. C10. F150\nX60. C0\nG13.1\nM30\n%\n"

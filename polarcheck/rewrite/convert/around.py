@@ -62,10 +62,15 @@ class _Writer:
         self._taken = mask_at(count, list(new.taken))
         self._order, self._begins = _grouped(self.trace.run.block, count)
         self._from_section = self._motion_from_section()
-        self._resigns = (self.source.control.line_comments, self.source.control.parentheses_are_comments) != (
-            self.target.control.line_comments,
-            self.target.control.parentheses_are_comments,
+        ours, theirs = self.source.control, self.target.control
+        is_signed_alike = (ours.line_comments, ours.parentheses_are_comments) == (
+            theirs.line_comments,
+            theirs.parentheses_are_comments,
         )
+        #: Named blocks, whose names become comments; with them those whose comments have other signs.
+        is_same_language = self.source.macro.language == self.target.macro.language
+        self._named = set() if is_same_language else set(self.trace.text.labels.block.tolist())
+        self._restated = self._named | (set() if is_signed_alike else self.texts.with_comment)
         self._reported = False
         self._contours: dict[tuple[float, float], tuple[int, int]] = {}
         self._has_lost_motion = False
@@ -142,7 +147,7 @@ class _Writer:
 
     def _program(self, block: int) -> None:
         """A block with a program number, which stays or is written by Heads."""
-        if self._resigns and block in self.texts.with_comment and writes_numbers(self.target):
+        if block in self._restated and writes_numbers(self.target):
             self.new.blocks[block] = [NewBlock()]
 
     def _same_each_time(self, rows: Rows) -> Translated:
@@ -194,7 +199,7 @@ class _Writer:
         if result.whole:
             self.new.blocks[block] = [NewBlock((), comment)]
             return
-        if not (result.changed or comment or (self._resigns and block in self.texts.with_comment)):
+        if not (result.changed or comment or block in self._restated):
             return
         new = [NewBlock(tuple(result.words), comment)]
         if result.behind:
@@ -204,7 +209,7 @@ class _Writer:
                 before.pop()
         if result.behind and not self._says_absolute(block):
             new.append(NewBlock(tuple(result.behind)))
-        stays = new[0].words or comment or block in self.texts.with_comment
+        stays = new[0].words or comment or block in self.texts.with_comment or block in self._named
         self.new.blocks[block] = new if stays else new[1:]
 
     def _leads_on(self, block: int) -> bool:
@@ -224,8 +229,8 @@ class _Writer:
         content, line = self.texts.content(block), self.texts.line(block)
         if self.texts.is_mark(block):
             return
-        if not content:
-            if self._resigns and block in self.texts.with_comment:
+        if not content or (block in self._named and self.texts.is_text(block)):
+            if block in self._restated:
                 self.new.blocks[block] = [NewBlock()]
             return
         if not self.trace.text.blocks.is_macro[block]:

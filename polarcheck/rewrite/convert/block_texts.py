@@ -68,13 +68,15 @@ class BlockTexts:
         return self._contents[block]
 
     def rest(self, block: int, row: int) -> str:
-        """What of a block is neither comment nor an executed word of this row."""
+        """What of a block is neither comment nor name nor an executed word of this row."""
         run = self.trace.run
         low, high = stretch(run.row, row, row + 1)
         spans = [
             (self._with_name(block, int(run.words.start[index])), int(run.words.end[index]))
             for index in range(low, high)
         ]
+        labels = range(*stretch(self.text.labels.block, block, block + 1))
+        spans += [(int(self.text.labels.start[index]), int(self.text.labels.end[index])) for index in labels]
         return _behind_head(self.text.without_comments(block, spans))
 
     def _with_name(self, block: int, start: int) -> int:

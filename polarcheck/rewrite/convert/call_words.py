@@ -25,27 +25,25 @@ class Calls:
 
     def __init__(self, trace: Trace, target: Machine) -> None:
         self.trace, self.source, self.target = trace, trace.machine, target
-        writing = self.source.writing
+        writing, their_writing = self.source.writing, target.writing
         self._call = _pattern(writing.subprogram_call, writing.subprogram_repeats)
         self._return = "".join(writing.subprogram_return.split()).upper()
         ours, theirs = self.source.macro, target.macro
-        has_calls = bool(target.writing.subprogram_call)
         self.is_same = (
-            has_calls
+            bool(their_writing.subprogram_call)
+            and (writing.subprogram_call, writing.subprogram_return)
+            == (their_writing.subprogram_call, their_writing.subprogram_return)
             and ours.language == theirs.language
             and all(
                 getattr(ours, key) == getattr(theirs, key)
                 for key in ("subprogram_calls", "program_returns", "local_calls", "sequence_word", "repeats_in_p")
             )
         )
-        is_number = trace.text.words.address == ord("O")
-        self._programs = {
-            int(value) % _LAST_DIGITS for value in trace.text.words.value[is_number].tolist() if value == value
-        }
         #: Programs that are called and not in the file -> the first line with a call.
         self.missing: dict[int, int] = {}
         self.is_flow = trace.blocks.codes(*self.source.macro.flow_codes)
-        enters = np.append(np.diff(trace.run.depth) > 0, False)[: len(trace)]
+        #: Rows behind which a program runs at the next depth.
+        self._enters = enters = np.append(np.diff(trace.run.depth) > 0, False)[: len(trace)]
         self.calls_foreign_macro = trace.blocks.codes(*self.source.macro.macro_calls) & ~enters
 
     def names(self, text: str) -> bool:
@@ -67,7 +65,7 @@ class Calls:
             reason = f"{text}: how {self.target.title} begins the main program again is not known"
             raise refused_at(self.trace, row, reason)
         match = self._call.fullmatch(squeezed) if self._call else None
-        if match and int(match["number"]) % _LAST_DIGITS not in self._programs:
+        if match and not self._enters[row]:
             self.missing.setdefault(int(match["number"]) % _LAST_DIGITS, line)
         words = text.split() if self.is_same else self.written(text)
         if words is None:

@@ -47,7 +47,9 @@ class CycleWords:
         self.trace, self.source, self.target = trace, trace.machine, target
         self.measures, self._g = measures, meanings
         self._is_repetitive = trace.blocks.listed("repetitive_cycle")
-        self.has_arguments = trace.blocks.listed(*WITH_ARGUMENTS) | trace.modal.in_cycle
+        moves_nothing = trace.blocks.listed("axis_words_no_move")
+        is_limit = moves_nothing & ~trace.blocks.has(*self.source.axis_words)
+        self.has_arguments = (trace.blocks.listed(*WITH_ARGUMENTS) & ~is_limit) | trace.modal.in_cycle
 
     def why_not(self, row: int) -> str:
         """Return why the arguments of a row do not mean the same on the other machine; empty where they do."""

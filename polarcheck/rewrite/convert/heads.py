@@ -51,18 +51,23 @@ class Heads:
     def _numbers_to_names(self) -> None:
         """O and a number of each program: comments, or the heads of an archive where there are several programs."""
         blocks = sorted(self.texts.with_program_number)
+        # The first program may have none, and call those behind it.
+        first_main = min(self._main, default=0)
+        has_several = len(blocks) > 1 or any(block > first_main for block in blocks)
         for index, block in enumerate(blocks):
             content = self.texts.content(block)
             number = _NUMBER.search(content)
             heads = self.target.writing.archive_heads
-            if len(blocks) > 1 and heads and number:
-                text = heads[0 if block in self._main or not index else 1].replace("#", number[1])
-                self._replace(block, text + self._comments(block))
+            if has_several and heads and number:
+                is_main = block in self._main or (not index and block <= first_main)
+                text = heads[0 if is_main else 1].replace("#", number[1])
+                # Nothing stands beside such a head: the control would take it for a part of the name.
+                self._replace(block, self._lines(block, [text, *self._comments(block)]))
             else:
-                self._replace(block, comment_text(content, self.target) + self._comments(block))
+                self._replace(block, " ".join([comment_text(content, self.target), *self._comments(block)]))
 
-    def _comments(self, block: int) -> str:
-        return "".join(f" {comment_text(comment, self.target)}" for comment in comments_of(self.trace.text, block))
+    def _comments(self, block: int) -> list[str]:
+        return [comment_text(comment, self.target) for comment in comments_of(self.trace.text, block)]
 
     def _marks(self) -> None:
         """% and names such as %_N_SHAFT_MPF."""

@@ -56,6 +56,13 @@ class ToolWords:
             and ours.has_edges == theirs.has_edges
         )
 
+    def is_called_by_d(self, row: int) -> bool:
+        """A D word calls in this row: an edge, or with T the offset that has the number of the tool."""
+        trace = self.trace
+        if self.source.offsets.called_by == "d-word" and trace.tools.calls_tool[row]:
+            return bool(trace.tools.tool[row] == trace.blocks.word("D")[row])
+        return bool(trace.tools.has_edges[row])
+
     def call(self, row: int) -> ToolCall:
         """The words that call in their place what a row calls; for a tool with a name those of a free number."""
         call, tool = self._call(row), int(self.trace.tools.tool[row])

@@ -190,7 +190,7 @@ class Translation:
         letter, written = self.measures.letter_of(index), self.measures.written(index)
         if letter in ("G", "M"):
             self._code_word(row, index, result)
-        elif letter == "T" or (letter == "D" and bool(self.trace.tools.has_edges[row])):
+        elif letter == "T" or (letter == "D" and self.tools.is_called_by_d(row)):
             self._tool(row, index, result)
         elif self._speeds.is_speed[index]:
             word = self._speeds.written(row, index)
@@ -229,6 +229,8 @@ class Translation:
         text = f"{written}: {meaning.reason}"
         if meaning.note:
             self._note(row, f"{written} is left out: {meaning.note}")
+            if not is_g and bool(self.trace.tools.calls_tool[row]) and not self.trace.blocks.has("T")[row]:
+                self._call_tool(row, result)
         elif meaning.reason and is_g and meaning.key in _OF_ITS_BLOCK:
             result.whole = result.whole or text
         elif meaning.reason and is_g and not meaning.key:
@@ -246,9 +248,16 @@ class Translation:
         if self.tools.is_same:
             result.words.append(self.measures.written(index))
             return
-        low = min(word for word in self.measures.words_of(row) if self.measures.letter_of(word) in "TD")
-        if index != low or not bool(self.trace.tools.calls_offset[row]):
+        low, *others = sorted(word for word in self.measures.words_of(row) if self.measures.letter_of(word) in "TD")
+        calls = bool(self.trace.tools.calls_offset[row])
+        if index != low or not calls:
+            if self.measures.letter_of(index) == "T" and (index in others or not calls):
+                prepares = f"it prepares a tool, and T alone calls one on {self.target.title}"
+                self._note(row, f"{self.measures.written(index)} is left out: {prepares}")
             return
+        self._call_tool(row, result)
+
+    def _call_tool(self, row: int, result: Translated) -> None:
         call = self.tools.call(row)
         if call.refusal:
             raise refused_at(self.trace, row, call.refusal)

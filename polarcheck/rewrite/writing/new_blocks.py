@@ -90,13 +90,14 @@ def edits_of(
 
     N, O and block skip at the head of a block stay, N with its first new block, block skip with each. The others get N
     words between those of the original where its blocks have them and there is room. Its comments stay, in the signs of
-    the machine, behind its first block. Where the machine takes `;` for a comment, blocks that it parts go to lines of
-    their own. style: of the original. machine: for which the new program is. without_skip: blocks that lose their block
-    skip.
+    the machine, behind its first block, and for a machine of another language the name of the block with them. Where
+    the machine takes `;` for a comment, blocks that it parts go to lines of their own. style: of the original. machine:
+    for which the new program is. without_skip: blocks that lose their block skip.
     """
     text = original.trace.text
     sequence = _Sequence(text, style)
     written, with_more = text.written_blocks(), {*text.comments.block.tolist(), *text.labels.block.tolist()}
+    takes_labels = original.trace.machine.macro.language == machine.macro.language
     return [
         _edit(
             text,
@@ -108,6 +109,7 @@ def edits_of(
             machine,
             index in without_skip,
             index in with_more,
+            takes_labels,
         )
         for index in sorted(blocks)
     ]
@@ -274,14 +276,19 @@ def _edit(
     machine: Machine,
     is_without_skip: bool,
     has_more: bool,
+    takes_labels: bool,
 ) -> Replace:
-    """content: the characters of the block. has_more: it has comments or labels."""
+    """content: the characters of the block. has_more: it has comments or labels. takes_labels: these stay labels."""
     start = int(text.blocks.start[index])
     begin, finish = without_blanks(content, start)
     lead, plain, comments, labels = begin - start, content, list[str](), list[int]()
     if has_more:
         plain, comments = text.without_comments(index), comments_of(text, index)
-        labels = text.labels.end[slice(*stretch(text.labels.block, index, index + 1))].tolist()
+        numbers = range(*stretch(text.labels.block, index, index + 1))
+        if takes_labels:
+            labels = text.labels.end[numbers].tolist()
+        else:
+            comments = [*(text.written(text.labels, number) for number in numbers), *comments]
     head = _HEAD.match(plain, lead)
     head_end = max([head.end() if head else lead, *(end - start for end in labels)])
     kept = content[lead:head_end].strip()

@@ -46,8 +46,9 @@ def read(path: str, data: bytes, settings: Settings) -> Original:
     Read a program with its settings.
 
     Raises SourceError, TooHardError; RefusedError for a file with several channels, which wait for each other, and for
-    one that runs otherwise with block skip, since one result cannot be both; and where a section rests on a variable
-    without a value, or a condition, a call or a return in the mode does, so that nobody knows which blocks run.
+    one that runs otherwise with block skip or calls another file, since one result cannot be both; and where a section
+    rests on a variable without a value, or a condition, a call or a return in the mode does, so that nobody knows which
+    blocks run.
     """
     runs = check.read(data, settings.machine, settings.job, path, settings.encoding)
     if len({tables["text"].source.channel for _, tables in runs}) > 1:
@@ -57,6 +58,9 @@ def read(path: str, data: bytes, settings: Settings) -> Original:
             [Refusal(0, "it runs otherwise with block skip than without: choose with --block-skip on or off")]
         )
     tables = runs[0][1]
+    if parts := tables["text"].source.parts:
+        reason = "it calls a program that stands in another file: put both into one file, the called one behind it"
+        raise RefusedError([Refusal(0, f"{parts[0].name}: {reason}")])
     original = Original(path, data, settings, tables)
     if any(value.matters for value in unknown_values(tables)):
         raise RefusedError(original.unknown)
