@@ -932,6 +932,29 @@ def test_a_program_of_another_file_is_named_and_not_written(command: list[str]) 
     assert "O4.nc: it calls a program that stands in another file: put both into one file" in result.output
 
 
+@pytest.mark.ci
+@looped("target", ["haas-lathe", "okuma-osp", "mazak-quick-turn"])
+def test_a_refusal_is_one_line_that_says_what_to_write(target: str) -> None:
+    """X is lost with the tool offset; what differs because of that is no reason of its own."""
+    program = section("G1 X40. C5. F200", "X60. C0").replace(
+        "T0101\nG0 X60. Z2. C0", "G0 X60. Z2. C0\nT0101\nG0 Z2. C0"
+    )
+    reasons = refused(program, SOURCE, target)
+    assert len(reasons) == 1
+    assert "T0101 in line 7 leaves open where X stands; write G0 X... after it" in reasons[0][1]
+
+
+@pytest.mark.ci
+@looped(("source", "target"), [("siemens-transmit", "fanuc-30i"), ("siemens-transmit", "haas-lathe")])
+def test_a_corner_that_another_control_rounds_otherwise_is_one_reason(source: str, target: str) -> None:
+    program = (
+        SIEMENS + "DIAMOF\nTRANSMIT\nG17\nG1 G42 X20 Y0 F200\nX30 Y5\nX15 Y5\nG40 X30 Y-15\nTRAFOOF\nDIAMON\nM30\n"
+    )
+    reasons = refused(program, source, target, "1/1:radius=1")
+    assert all("path differs" in text and "goes round outer corners otherwise" in text for _, text in reasons)
+    assert all(line for line, _ in reasons)
+
+
 # ---- values in doubt ----
 
 MILLED_AT_30 = "%\nO1\nG21 G98 G40\nT0101\nG0 X60. Z2. C30.\nG12.1\nG1 X36. C10. F150\nX60. C0\nG13.1\nM30\n%\n"

@@ -70,7 +70,7 @@ def _of_move(tables: Tables, row: int) -> str:
             "the feed on the plane is not known: F is along the way with Z, and where Z stands before is not known; "
             "write G0 Z... before the polar mode"
         )
-    return _position(tables, row) if cause == _POSITION else _feed(tables, row)
+    return position_not_known(tables["trace"], row) if cause == _POSITION else _feed(tables, row)
 
 
 def value_not_known(trace: Trace, variables: Sequence[int | None], word: str) -> str:
@@ -134,8 +134,8 @@ def _not_known_from_program(trace: Trace, row: int, setter: int, what: str, key:
     return f"{missing}: {setting} sets wear or a difference alone; {to_give(trace.tools, trace.machine, row, key)}"
 
 
-def _position(tables: Tables, row: int) -> str:
-    trace: Trace = tables["trace"]
+def position_not_known(trace: Trace, row: int) -> str:
+    """Return why the position in a row of a section is not known, and what to write."""
     if trace.path.frames is not None and not trace.path.frames.is_known[row]:
         return "the position is not known: the frame in force is not simulated"
     section = trace.mode.section == trace.mode.section[row]
@@ -222,7 +222,7 @@ _REASONS: dict[Need, _Reason] = {
     "radius": _no_offset("radius", "radius", lambda trace: trace.offsets.radius_set_in),
     "diameter": _no_offset("cutter diameter", "diameter"),
     "nose": _no_offset("nose type", "nose", lambda trace: trace.offsets.nose_set_in),
-    "position": _position,
+    "position": lambda tables, row: position_not_known(tables["trace"], row),
     "rate": _of_move,
     "travel": _of_move,
     "origin": _origin,

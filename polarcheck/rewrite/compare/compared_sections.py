@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import msgspec
 import numpy as np
 
+from polarcheck.checking.not_known import position_not_known
 from polarcheck.columns.filling import before, happened
 from polarcheck.columns.path.moves import Moves, programmed_moves, z_along
 from polarcheck.columns.path.standing_moves import with_z_alone
@@ -118,8 +119,7 @@ def of_sections(trace: Trace, tool_center: ToolCenter, steps: Sequence[Step], te
             moves = plain[low:high]
         turned, knows_z = _turned(trace, moves, number)
         if not turned.is_known.all():
-            line = trace.line(moves.row[np.argmin(turned.is_known)])
-            needs = f"a position of line {line} is not known"
+            needs = position_not_known(trace, int(moves.row[np.argmin(turned.is_known)]))
         path = _with_feeds(trace, turned, moves.row, terms, in_section=True)
         if terms.is_rewritten:
             path = msgspec.structs.replace(path, feed=path.feed * moves.plane_share)

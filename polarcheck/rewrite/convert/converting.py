@@ -121,11 +121,17 @@ def _remarks(original: Original, target: Settings, style: Style, open_orders: Se
 def _require_equal(result: ReadBack, original: Original, target: Settings) -> None:
     """Raise RefusedError if the new program differs; with what helps where only the way round corners does."""
     ours, theirs = original.settings.machine, target.machine
-    differs_in_path = any("path differs" in difference.text for difference in result.differences)
     is_compensated = bool(original.trace.compensation.compensates.any())
-    if differs_in_path and is_compensated and ours.compensation.corner != theirs.compensation.corner:
+    if is_compensated and ours.compensation.corner != theirs.compensation.corner:
         how = "goes round outer corners otherwise: `polarcheck compensate --center` writes the path of the tool center,"
-        raise RefusedError([*result.differences, Refusal(0, f"{theirs.title} {how} which can be converted")])
+        corners = f"{theirs.title} {how} which can be converted"
+        reasons = [
+            Refusal(difference.line, f"{difference.text}: {corners}")
+            for difference in result.differences
+            if "path differs" in difference.text
+        ]
+        if reasons:
+            raise RefusedError(reasons)
     require_equal(result)
 
 

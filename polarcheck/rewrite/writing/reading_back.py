@@ -208,6 +208,10 @@ def _of_comparison(
     other_states: Collection[str] = (),
     origin: Sequence[int] = (),
 ) -> Iterator[Refusal]:
+    """Yield why the programs cannot be compared, else what differs: without what is not known it may not."""
+    if reasons := [Refusal(0, f"not comparable: {reason.reason}") for reason in result.not_compared if reason.matters]:
+        yield from reasons
+        return
     for section in result.sections:
         for difference in section.differences:
             is_rapid = rapid_as_line and difference.what == "feed" and difference.old == "rapid traverse"
@@ -217,9 +221,6 @@ def _of_comparison(
         of_line = difference.old_line or (line_of(origin, difference.new_line) if difference.new_line else 0)
         if difference.what != "order" or of_line not in decided:
             yield refusal_of(difference)
-    for reason in result.not_compared:
-        if reason.matters:
-            yield Refusal(0, f"not comparable: {reason.reason}")
 
 
 def _times(result: Comparison) -> Iterator[Refusal]:
