@@ -295,6 +295,23 @@ def test_another_origin_on_another_machine_is_no_verdict() -> None:
         assert comparison(old, revision(program.replace("G54", words), "haas-lathe")).verdict == NOT_COMPARED, words
 
 
+@pytest.mark.ci
+@looped(("other", "start"), [("haas-lathe", "P2000 M133"), ("takisawa", "S2000 M70"), ("okuma-osp", "SB=2000 M13")])
+def test_m3_may_start_the_live_tool_where_no_code_is_named_for_it(other: str, start: str) -> None:
+    """Of a Mitsubishi the profile names none: that the main spindle stands on the other lathe is no difference."""
+    head = "O1\nG21\nG97 S2000 M3\nG0 X25. Z2. C0\n"
+    old = revision(f"{head}G12.1\nG1 X10. C0 F200\nC5.\nX25.\nG13.1\nM30\n", "mitsubishi-m700")
+    haas = "G17\nG112\nG1 X10. Y0 F200.\nY5.\nX25.\nG113\nM30\n"
+    sections = {
+        "haas-lathe": haas,
+        "takisawa": "G12.1\nG1 X20. C0 F200\nC5.\nX50.\nG13.1\nM30\n",
+        "okuma-osp": "G137 C0\nG101 X10. Y0 F200\nY5.\nX25.\nG136\nM30\n",
+    }
+    new = head.replace("S2000 M3", start).replace("X25.", "X50.") + sections[other]
+    result = comparison(old, revision(new.replace("G21\n", "" if other == "okuma-osp" else "G21\n"), other))
+    assert "spindle" not in text(result), text(result)
+
+
 # ---- what is not known ----
 
 

@@ -83,9 +83,12 @@ def entry_differences(old: Stretch, new: Stretch, *, is_same_machine: bool, term
 def _of_one_machine(old: Stretch, new: Stretch) -> Iterator[str]:
     """Yield the states that only one of two machines has, or whose codes its profile does not name."""
     traces = old.trace, new.trace
-    for what, codes in (("live_tool", "live_tool_on"), ("spindle", "spindle_on")):
-        if not all(getattr(trace.machine.m_codes, codes) for trace in traces):
-            yield what
+    names_live_tool = [bool(trace.machine.m_codes.live_tool_on) for trace in traces]
+    if not all(names_live_tool):
+        yield "live_tool"
+    # Without a code for the live tool M3 may start either.
+    if names_live_tool[0] != names_live_tool[1] or not all(trace.machine.m_codes.spindle_on for trace in traces):
+        yield "spindle"
     if any(trace.machine.polar.plane_is_fixed for trace in traces):
         yield "c_angle"
     if any(np.isnan(speed_in_force(trace)).all() for trace in traces):
