@@ -657,6 +657,61 @@ def test_what_makes_it_symmetric_is_likelier_than_what_closes_it(
     assert f"with {word} " in message
 
 
+#: A hexagon with one side farther in, from a corner on; a turned one with leads on the extensions of two sides.
+KEYED = [
+    *("G42 X39.5 C-11.403 F200", "C11.403", "X0. C22.805", "X-35.5 C12.557", "C-12.557"),
+    *("X0. C-22.805", "X39.5 C-11.403"),
+]
+TURNED = [
+    *("G42 X39.404 C11.375 F150", "X26.269 C22.75", "X-26.269", "X-52.539 C0.", "X-26.269 C-22.75", "X26.269"),
+    *("X52.539 C0.", "X39.404 C11.375"),
+]
+
+
+@pytest.mark.nightly
+@looped(
+    ("contour", "index", "wrong", "word"),
+    [
+        (KEYED, 0, "G42 X93.5 C-11.403 F200", "X39.5"),
+        (KEYED, 0, "G42 X19.5 C-11.403 F200", "X39.5"),
+        (KEYED, 6, "X93.5 C-11.403", "X39.5"),
+        (TURNED, 6, "X525.39 C0.", "X52.539"),
+        (TURNED, 3, "X-525.39 C0.", "X-52.539"),
+    ],
+)
+@pytest.mark.parametrize("control", ["fanuc-30i", "doosan"])
+def test_of_two_ends_that_may_be_wrong_the_one_off_the_shape_is(
+    contour: list[str], index: int, wrong: str, word: str, control: str
+) -> None:
+    first, last = ("G1 X57.5 C-17.403 F1500", "G40 X58.892 C-16.197")
+    if contour is TURNED:
+        first, last = ("G1 X58.724 C14.643 F1500", "G40 X56.725 C16.375")
+    right = [first, HEAD[-1], *contour, last]
+    slipped = [*right[:2], *contour[:index], wrong, *contour[index + 1 :], last]
+    for turn in (as_it_is, mirrored):
+        for sound, lines in ((True, right), (False, slipped)):
+            text = "\n".join([*HEAD[:-2], *turn(lines), *TAIL[1:]]) + "\n"
+            in_both = ((text, "1:radius=4"), (tenth_in_inch(text), "1:radius=0.4"))
+            for number, (written, tool) in enumerate(in_both):
+                found = said_and_where(written, control, tool)
+                assert len(found) == (not sound)
+                for message, line in found:
+                    assert line == len(HEAD) - 2 + 2 + index + 1
+                    assert number or f"with {word}" in message
+
+
+def tenth_in_inch(text: str) -> str:
+    """A program with a tenth of each number, in inch: slips of the pen remain such."""
+    text = re.sub(r"([XZCF])(-?[\d.]+)", lambda word: f"{word[1]}{round(float(word[2]) / 10, 4)}", text)
+    return text.replace("G98", "G20 G98")
+
+
+def said_and_where(text: str, control: str, tool: str) -> list[tuple[str, int]]:
+    """What is said in which line."""
+    findings = report_of(text, control, tool).findings
+    return [(finding.message, finding.line) for finding in findings if finding.severity != "note"]
+
+
 @pytest.mark.ci
 def test_a_distance_that_is_wrong_is_not_explained_by_reading_all_of_them_as_positions() -> None:
     moves = ["X-17.966 C5.837", "X-11.103 C-15.282", "X11.103 C-15.282", "X17.966 C5.837", "X0 C18.89"]

@@ -27,7 +27,8 @@ _MOST_CORNERS = 2
 _LEAST_WITNESS, _IF_SHORT, _SHORT = 1.0, 2.0, 4
 #: What each corner that is lost counts, but for the one of a wrong point on a side [coordinates].
 _OF_LOST_CORNER = 2.0
-#: How much less likely an edit of the block before the path is, since it leads to it [coordinates].
+#: How much less likely an edit of the block before the path is, since it leads to it; not where that closes the path
+#: [coordinates].
 _OF_LEAD = 2.0
 #: Edits that are looked at for two mistakes, and second edits of each; kinds of edits that are none of two.
 _FIRST_EDITS, _SECOND_EDITS, _OF_BLOCKS = 8, 2, ("twice", "order")
@@ -100,7 +101,9 @@ def _compared(loop: WrittenLoop, edits: Iterable[Edit]) -> Compared:
     edits = edits if len(edits) < most else []
     outlines = outlines_of(loop, edits)
     chances = chances_of(outlines, loop.tolerance)
-    total = chances.total + np.array([0.0, *(edit.cost + _OF_LEAD * (not edit.corner) for edit in edits)])
+    # Where the path would be closed, its start and its end are one point, and either may be wrong.
+    is_of_lead = np.array([False, *(not edit.corner for edit in edits)]) & (chances.is_open >= chances.is_open[0])
+    total = chances.total + np.array([0.0, *(edit.cost for edit in edits)]) + _OF_LEAD * is_of_lead
     # A shape that loses corners is another shape.
     lost = np.maximum(chances.corners[0] - chances.corners - 1, 0)
     return Compared(loop, edits, outlines, chances, total[0] - total - _OF_LOST_CORNER * lost)

@@ -20,8 +20,9 @@ _LEAST, _GREATEST = 0.02, 2000.0
 #: of which none is coarser than that of so many decimals.
 _SAME_NUMBER, _STEPS, _COARSEST = 5e-5, 1.5, 2
 #: By how much an edit is less likely, as a number of coordinates that are as they are by chance: a slip that is seldom
-#: made, a number of another block, a word or block that is missing or too many, another sense, a number with more
-#: decimals than what is written, one of a block that is not beside it, and one that is nearly that of another block.
+#: made, a number of another block, a word or block that is missing or too many, another sense, a number that no other
+#: block has with more decimals than what is written, one of a block that is not beside it, and one that is nearly that
+#: of another block.
 _SELDOM, _ELSEWHERE, _OF_BLOCK, _SAME_SIZE, _FINER, _FAR, _NEARLY = 0.3, 0.2, 0.4, 0.1, 0.6, 2.5, 0.4
 
 #: What no R, I or J that is meant is larger than, as a multiple of how far the path reaches from its start.
@@ -259,7 +260,8 @@ def _of_others(value: float, text: str, others: tuple[float, ...], step: float) 
 def _cost(slip: Slip, written: str, others: tuple[float, ...], step: float) -> float:
     apart = min((abs(abs(float(slip.text)) - size) for size in others), default=np.inf)
     is_other = apart < _SAME_NUMBER
-    is_finer, is_nearly_other = _decimals(slip.text) > _decimals(written), not is_other and apart <= step
+    is_finer = not is_other and _decimals(slip.text) > _decimals(written)
+    is_nearly_other = not is_other and apart <= step
     cost = (not slip.is_common) * _SELDOM + (not (slip.plain or is_other)) * _ELSEWHERE
     return cost + is_finer * _FINER + is_nearly_other * _NEARLY
 
