@@ -15,15 +15,17 @@ BLOCKS = "Z{}\nG42 X{} C0 F{}\nG3 I-{}\nG1 G40 X{}\n"
 UNITS = {"G21": (1.0, "20.", "200", "10.", "60."), "G20": (25.4, "1.", "8.", ".5", "3.")}
 
 
-def off(levels: list[float], code: str, turning: str = "") -> dict[int, float]:
-    """The passes that are off by the number of their Z, and the Z that each would have."""
+def off(levels: list[float], code: str, turning: str = "", machine: str = "fanuc") -> dict[int, float]:
+    """The passes that are off by the number of their Z, and the Z that each would have; a Citizen's Z turned over."""
     scale, across, feed, radius, away = UNITS[code]
-    passes = "".join(BLOCKS.format(f"{z / scale:.5f}", across, feed, radius, away) for z in levels)
-    text = f"O1\n{turning}{code} G98 T0101\nG0 X{away} Z.2 C0\nG12.1\nG1 X{away} F{feed}\n{passes}Z.2\nG13.1\n"
-    tables = tables_of(text, "fanuc", f"1:radius={4 / scale:.5f}")
+    sense = -1 if machine == "citizen" else 1
+    passes = "".join(BLOCKS.format(f"{sense * z / scale:.5f}", across, feed, radius, away) for z in levels)
+    text = f"O1\n{turning}{code} G98 T0101\nG0 X{away} Z{sense * 0.2} C0\nG12.1\nG1 X{away} F{feed}\n{passes}"
+    text += f"Z{sense * 0.2}\nG13.1\n"
+    tables = tables_of(text, machine, f"1:radius={4 / scale:.5f}")
     depths = tables["pass_depths"]
     lines = tables["trace"].blocks.line
-    return {(int(lines[row]) - turning.count("\n") - 2) // 4: z for row, z in depths.expected.items()}
+    return {(int(lines[row]) - turning.count("\n") - 2) // 4: sense * z for row, z in depths.expected.items()}
 
 
 @pytest.mark.nightly
@@ -52,7 +54,8 @@ def off(levels: list[float], code: str, turning: str = "") -> dict[int, float]:
     ],
 )
 def test_a_pass_that_is_out_of_step(levels: list[float], expected: dict[int, float], code: str) -> None:
-    assert off(levels, code) == pytest.approx(expected, abs=0.001)
+    for machine in ("fanuc", "citizen"):
+        assert off(levels, code, machine=machine) == pytest.approx(expected, abs=0.001)
 
 
 @looped(

@@ -128,17 +128,17 @@ class PassDepths(Columns, frozen=True):
         Of two passes, and where either of several may be the wrong one, the digits must show it. A pass that would have
         to go below the turning is right where another one would not.
         """
-        off = _outliers(passes.z)
+        bar, sense = self.air_cuts.bar, self.air_cuts.bar.trace.path.z_sense
+        off = _outliers(passes.z * sense)
         if len(off) != 1 or len(passes) < _LEAST:
-            scale = float(self.trace.lengths.scale[passes.row[0]])
-            off = [(number, z) for number, z in off if _is_slip(passes.z[number] / scale, z / scale)]
+            scale = float(self.trace.lengths.scale[passes.row[0]]) * sense
+            off = [(number, z) for number, z in off if _is_slip(passes.z[number] / scale, z / abs(scale))]
         if len(off) > 1:
-            bar = self.air_cuts.bar
-            off = [(number, z) for number, z in off if z * bar.trace.path.z_sense >= bar.deepest_turned] or off
+            off = [(number, z) for number, z in off if z >= bar.deepest_turned] or off
         if not off:
             return None
         number, z = off[0]
-        return int(passes.row[number]), z if len(off) == 1 else np.nan
+        return int(passes.row[number]), z * sense if len(off) == 1 else np.nan
 
     @cached_property
     def _of_sections(self) -> list[tuple[int, float]]:
