@@ -27,8 +27,9 @@ from polarcheck.rules.rule import load_all
 
 _WORD = r"[A-Z]+=?[-+]?(?:\d+\.?\d*|\.\d+)"
 _VALUES = re.compile(
-    rf"(?:(?<!min )\b(?:with|write|or|and) (?P<words>{_WORD}(?: {_WORD})*)(?P<rest>(?: here| in line (?P<line>\d+)"
-    rf"| not here but in line (?P<moved>\d+)| in a block of its own before this one)?)"
+    rf"(?:(?<!min )(?<!stands here, )\b(?:with|write|or|and) (?P<words>{_WORD}(?: {_WORD})*)"
+    rf"(?P<rest>(?: here| in line (?P<line>\d+)| not here but in line (?P<moved>\d+)"
+    rf"| in a block of its own before this one)?)"
     rf"(?= (?:it|its|all|more|here|in line|and leave)\b|$|,| \()"
     rf"|[;:] (?P<others>{_WORD}(?: {_WORD})*)(?= would (?:fit|be tangent|lie)))"
 )
@@ -47,8 +48,8 @@ class Answer(NamedTuple):
 
     findings: at or above warning, that the sound program has not. is_open: nothing is said, but the check names what
     it did not evaluate. is_there: one of them stands at a line of the slip or names it. names: "" where none names a
-    value, else "right" or "wrong". remedy: of the values as they are told, and fix: of --unsafe-fixes: "" where there
-    is none, else "right" or "wrong".
+    value, "right" where it is that of the sound program, else "wrong". remedy: of the values as they are told, and fix:
+    of --unsafe-fixes: "" where there is none, else "right" or "wrong".
     """
 
     findings: tuple[Finding, ...]
@@ -97,12 +98,12 @@ def answered(slip: Planted, before: Sequence[Finding] | None = None) -> Answer:
     findings = [finding for finding in said_of(report) if not old[finding.rule, finding.message]]
     lines, needed = changed_lines(sound, program)
     named = [value for finding in findings for value in values_of(finding)]
-    names = ""
-    if named and needed:
-        names = "right" if any(needed <= _values(value.words) for value in named) else "wrong"
-    remedy = ""
+    names = remedy = ""
     if named:
         remedy = "right" if any(is_sound(slip, written(program, value)) for value in named) else "wrong"
+        # The sound program has no word for what is written once too often.
+        is_named = any(needed <= _values(value.words) for value in named) if needed else remedy == "right"
+        names = "right" if is_named else "wrong"
     fix = ""
     if any(finding.fix for finding in findings):
         lines_fixed = fixed(program)
@@ -117,7 +118,7 @@ class Value(NamedTuple):
     Words that a message says to write, in which lines (from 1), in a block of their own or not.
 
     word: the word in whose place they stand, "" where the message names none. out_of: the line that they leave, 0 for
-    none.
+    none. more: lines behind these that the message counts and does not name, where the word stands, too.
     """
 
     words: tuple[str, ...]
@@ -125,6 +126,7 @@ class Value(NamedTuple):
     is_block: bool
     word: str = ""
     out_of: int = 0
+    more: int = 0
 
 
 def values_of(finding: Finding) -> list[Value]:
@@ -134,10 +136,11 @@ def values_of(finding: Finding) -> list[Value]:
         words = tuple((match["words"] or match["others"]).split())
         line = int(match["line"] or match["moved"] or finding.line)
         word = str(finding.values.get("word", "")) if line == finding.line else ""
-        also = re.search(r"likewise in lines? (\d+(?:(?:, | and )\d+)*)", finding.message[match.end() :])
+        pattern = r"likewise in lines? (\d+(?:(?:, | and )\d+\b(?! more))*)(?: and (\d+) more)?"
+        also = re.search(pattern, finding.message[match.end() :])
         lines = (line, *(map(int, re.findall(r"\d+", also[1])) if also else ()))
-        out_of = finding.line if match["moved"] else 0
-        found.append(Value(words, lines, "block" in (match["rest"] or ""), word, out_of))
+        out_of, more = finding.line if match["moved"] else 0, int(also[2] or 0) if also else 0
+        found.append(Value(words, lines, "block" in (match["rest"] or ""), word, out_of, more))
     return found
 
 
@@ -148,7 +151,8 @@ def written(program: Program, value: Value) -> tuple[Line, ...]:
         left = value.out_of - 1
         text = re.sub(rf"(?<![A-Z]){value.words[0]}(?![\d.]) ?", "", lines[left].text, count=1)
         lines = (*lines[:left], lines[left]._replace(text=text), *lines[left + 1 :])
-    for number in value.lines:
+    behind = [number for number, line in enumerate(lines, 1) if value.word in line.text and number > max(value.lines)]
+    for number in (*value.lines, *behind[: value.more]):
         index = min(number, len(lines)) - 1
         line = lines[index]
         if value.is_block:

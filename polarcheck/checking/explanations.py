@@ -242,7 +242,7 @@ class _Search:
             if best and best[0].likely.gain - likely.gain > reach:
                 break
             row = int(loop.row[likely.edit.corner])
-            edits = [] if self._contradicts(row, likely.edit) else self._edits(loop, likely)
+            edits = [] if self._contradicts(row, likely, own) else self._edits(loop, likely)
             found = self._tried(likely, row, edits, others) if edits else None
             if found is not None and not likely.is_clear and all(rule in _OF_CUTTER for rule, _ in found.gone):
                 continue
@@ -279,10 +279,17 @@ class _Search:
             return [best[0]._replace(is_named=False, edits=[], left=self.symptoms)] if is_one else []
         return [best[0]._replace(other=best[1]) if best[1:] else best[0]]
 
-    def _contradicts(self, row: int, edit: Edit) -> bool:
-        """The block of an edit differs from that of another pass, and with the edit it would have another number."""
-        blocks, numbers = self.trace.blocks, _numbers(edit.text)
-        other = self.compared.get(int(blocks.line[row]))
+    def _contradicts(self, row: int, likely: Likely, own: set[int]) -> bool:
+        """
+        The block of an edit differs from that of another pass, and with the edit it would have another number.
+
+        What is not clear is no reason either to edit a block that the other pass has, too. own: the lines of the path.
+        """
+        blocks, edit, numbers = self.trace.blocks, likely.edit, _numbers(likely.edit.text)
+        line = int(blocks.line[row])
+        other = self.compared.get(line)
+        if other is None and not likely.is_clear and not own.isdisjoint(self.compared):
+            return True
         if edit.kind != "word" or other is None or len(numbers) != 1:
             return False
         ((letter, number),) = numbers
