@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 import pytest
@@ -48,6 +49,32 @@ def test_a_stop_at_the_center_is_reported_once() -> None:
 
 ALONG_Z = "G1 X40. C16. F200\nZ-8.\n{}\nG1 X60.\n"
 INCH_ALONG_Z = "G20\nG1 X2. C.8 F8.\nZ-.3\n{}\nG1 X3.\n"
+
+
+ROUND = "G1 X50. F200\nZ-2.\nX40.\nG3 X-40. C0 R20.\n{}\nG3 X40. C0 R20.\n{}\nG1 X50.\nZ1.\n"
+
+
+@looped(
+    ("machine", "on", "off", "axis", "scale"),
+    [
+        ("fanuc", "G12.1", "G13.1", "C", 1),
+        ("doosan", "G12.1", "G13.1", "C", 10),
+        ("haas-lathe", "G112", "G113", "Y", 1),
+    ],
+)
+def test_a_line_along_z_is_advised_where_it_leaves_no_contour_at_two_depths(
+    machine: str, on: str, off: str, axis: str, scale: int
+) -> None:
+    for blocks, is_advised in ((("Z-5.", ""), False), (("Z-1.", ""), False), (("", "Z1."), True), (("Z1.", ""), True)):
+        for sense in ("G3", "G2"):
+            path = ROUND.format(*blocks).replace("G3", sense).replace("C", axis)
+            if scale != 1:
+                path = re.sub(r"([XZCYR])(-?[\d.]+)", lambda word: f"{word[1]}{float(word[2]) / scale}", path)
+            text = f"{'G20' if scale != 1 else 'G21'} G98\nG0 X50. Z1. C0\n{on}\n{path}{off}\nM30\n"
+            found = report_of(text, machine).findings
+            (finding,) = (finding for finding in found if finding.rule == "arc-off-polar-plane")
+            assert f": {sense} of line" in finding.message
+            assert finding.message.endswith("is still in force" + ", write G1" * is_advised)
 
 
 @pytest.mark.nightly

@@ -8,7 +8,11 @@ from polarcheck.rules.rule import ERROR, Hits, rule
 if TYPE_CHECKING:
     from polarcheck.columns.path.arcs import Arcs
     from polarcheck.columns.path.compensation import CutterCompensation
+    from polarcheck.columns.trace import Trace
     from polarcheck.rules.hit import Details, Hit
+
+#: Points nearer than this [mm] are one.
+_SAME = 0.02
 
 
 @rule(
@@ -75,7 +79,14 @@ def arc_off_polar_plane(arcs: Arcs, compensation: CutterCompensation) -> Hits:
     return Hits(arcs.is_off_plane, follows={"section": compensation.compensates})
 
 
-def details(hit: Hit) -> Details:
+def details(hit: Hit, upright: Trace) -> Details:
     from polarcheck.rules.wording.arcs import still_in_force
 
-    return {"still_in_force": still_in_force(hit.trace, hit.row)}
+    return {"still_in_force": still_in_force(hit.trace, hit.row, says_line=not _is_within_contour(upright, hit.row))}
+
+
+def _is_within_contour(upright: Trace, row: int) -> bool:
+    """It ends below the face where no other block moves Z: a line there would leave a contour at two depths."""
+    path, mode, line = upright.path, upright.mode, upright.blocks.line
+    moves_there = path.moves_z & (mode.section == mode.section[row]) & (abs(path.end - path.end[row]) <= _SAME)
+    return bool(path.z[row] < 0 and not moves_there[line != line[row]].any())

@@ -18,14 +18,15 @@ def arc_code(trace: Trace, row: int, reverse: bool = False) -> str:
     return move_code(trace.machine, "arc_clockwise" if is_clockwise else "arc_counterclockwise")
 
 
-def still_in_force(trace: Trace, row: int) -> str:
+def still_in_force(trace: Trace, row: int, *, says_line: bool = True) -> str:
     """`: G3 of line 12 is still in force, write G1`, where the block of an arc writes no code; else nothing."""
     start = int(trace.modal.motion_word[row])
     code = np.flatnonzero(trace.run.words.start == start)
     if start < 0 or not len(code) or trace.run.block[row] == trace.run.block[trace.run.row[code[0]]]:
         return ""
     line = int(trace.blocks.line[trace.run.row[code[0]]])
-    return f": {arc_code(trace, row)} of line {line} is still in force, write {move_code(trace.machine, 'line')}"
+    remedy = f", write {move_code(trace.machine, 'line')}" if says_line else ""
+    return f": {arc_code(trace, row)} of line {line} is still in force{remedy}"
 
 
 def arc_in_force_before(trace: Trace, row: int) -> tuple[str, str]:
