@@ -102,7 +102,6 @@ FAULTS_OF_CONTOUR: Final = (
     "arc-off-polar-plane",
     "arc-sense-reversed",
     "arc-not-tangent",
-    "arc-sweep-above-limit",
     "arc-word-without-arc",
     "contour-crosses-itself",
     "contour-at-two-depths",
@@ -132,6 +131,7 @@ FAULTS_OF_CONTOUR: Final = (
 )
 #: What leaves other metal than a contour says, or says that the contour is another one.
 FAULTS_OF_METAL: Final = (
+    "arc-sweep-above-limit",
     "c-angle-without-effect",
     "c-elsewhere-at-entry",
     "cancel-shorter-than-radius",

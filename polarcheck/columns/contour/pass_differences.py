@@ -163,11 +163,13 @@ class PassDifferences(Columns, frozen=True):
             which = passes.number[np.searchsorted(passes.row, one.row)]
             alike.append([self._rows_of(int(which)), (one.first, one.last)])
         written = [[(int(rows[0]), int(rows[-1])) for rows in (one.rows, one.model)] for one in self._written]
+        travels = np.flatnonzero(self.trace.path.travels)
         # Where a pass is in several, its points count more than its words.
         for ramp in (1, 0):
             for number, stretches in enumerate([*written, *alike]):
                 for first, last in stretches:
-                    column[max(first - ramp, 0) : last + 1 + ramp] = number
+                    before, behind = np.searchsorted(travels, first) - ramp, np.searchsorted(travels, last) + ramp
+                    column[travels[max(before, 0)] : travels[min(behind, len(travels) - 1)] + 1] = number
         return column
 
     @cached_property

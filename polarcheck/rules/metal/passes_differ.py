@@ -22,7 +22,11 @@ _APART = 1e-3
     values=("difference", "other_line"),
     worse=("difference",),
     subject="side",
-    follows={"twin": (*FAULTS_OF_CONTOUR, "contour-already-cut-into"), "motion": ("rapid-in-polar",)},
+    follows={
+        "block": ("arc-sweep-above-limit",),
+        "twin": (*FAULTS_OF_CONTOUR, "contour-already-cut-into", "rapid-through-stock", "side-repeated-in-offset-mode"),
+        "motion": ("rapid-along-contour", "rapid-in-polar"),
+    },
     is_symptom=True,
 )
 def passes_differ(pass_differences: PassDifferences) -> Mask:
