@@ -325,12 +325,39 @@ def test_a_control_without_compensation_in_the_mode() -> None:
 
 def test_center_refuses_a_path_that_is_wrong_already() -> None:
     text = PROGRAM.format(x="90.", blocks="G42 X30. F200\nC9.\nG2 X34. C11. R2.\nG1 C20.\nG40 X90.")
-    with pytest.raises(RefusedError, match="the tool does not fit into this arc"):
+    with pytest.raises(RefusedError, match="inside-arc-smaller-than-radius"):
         rewrite(text, centered)
     with pytest.raises(RefusedError, match="no polar section has G41 or G42"):
         rewrite(PROGRAM.format(x="90.", blocks=SQUARE), centered)
     with pytest.raises(RefusedError, match="R of T0808 is not known"):
         rewrite(PROGRAM.format(x="90.", blocks="G42 X30. F200\nC9.\nG40 X90."), centered, "9:radius=1")
+
+
+#: Blocks in the place of others of SQUARE with G42, by control; and why no path of the tool center is written.
+FAULTS = {
+    "an arc off its circle": ("X-38. C19.", "G3 X-38. C19. I-10. J0\nG1", "arc-end-off-circle"),
+    "an arc without a center": ("X-38. C19.", "G3 X-38. C19.\nG1", "arc-without-center"),
+    "two signs": ("X-38. C19.", "X--38. C19.", "bad-number"),
+    "a point lost": ("X-38. C19.", "X-38. C19", "C19 has no point"),
+    "a groove": ("C-19.", "C3.\nX-20.\nC-3.\nX-38.\nC-19.", "interference"),
+    "a short start-up": ("G42 X38. C0. F200", "X40. C0. F200\nG42 X38. C0.", "start-up-shorter-than-radius"),
+    "a cycle": ("G42 X38. C0.", "G90 U0\nG42 X38. C0.", "is missing"),
+    "rapid traverse": ("G42 X38. C0.", "G0 G42 X38. C0.", "rapid traverse has become F200 mm/min"),
+}
+
+
+@pytest.mark.ci
+@looped(
+    ("control", "fault"), [(control, fault) for control in ("fanuc-30i", "colchester", "takisawa") for fault in FAULTS]
+)
+def test_center_mends_no_fault_unseen(control: str, fault: str) -> None:
+    old, new, reason = FAULTS[fault]
+    blocks = "G42 X38. C0. F200\nC19.\nX-38. C19.\nC-19.\nX38.\nC0.\nG40 X90."
+    sound = PROGRAM.format(x="90.", blocks=blocks)
+    assert "G42" not in text_of(rewrite(sound, centered, machine=control))
+    with pytest.raises(RefusedError) as refused:
+        rewrite(sound.replace(old, new), centered, machine=control)
+    assert any(reason in refusal.text for refusal in refused.value.refusals), refused.value.refusals
 
 
 # ---- the command ----

@@ -963,3 +963,22 @@ def test_a_dwell_is_as_long_by_whichever_word(
             text = program(control, ("/G42", f"/{word}/G42"))
             assert (word, min(compared(tmp_path, control, sound, text).exit_code, 1)) == (word, code)
             assert (word, certified(tmp_path, control, sound, text).exit_code) == (word, code)
+
+
+@pytest.mark.ci
+@looped("control", ["fanuc-30i", "haas-lathe", "siemens-transmit", "takisawa"])
+def test_an_order_beside_a_contour_stands_where_it_stood_on_the_path_of_the_tool_center(
+    control: str, tmp_path: Path
+) -> None:
+    second = "Y" if control in PROGRAMS and control != "fanuc-30i" else "C"
+    place = f"{second}10.392/"
+    text = program(control, (place, f"{place}M8/"), (f"/{second}0/", f"/M9/{second}0/"))
+    (file,) = written(tmp_path, text)
+    center = run("compensate", "--center", "--machine", control, "--no-config", "--tool", CUTTER, file).stdout
+    assert "M8" in center
+    assert compared(tmp_path, control, text, center).exit_code == 0
+    elsewhere = center.replace("M8\n", "").replace("M9\n", "M8\nM9\n")
+    assert "M8 stands" in compared(tmp_path, control, center, elsewhere).stdout
+    before = program(control, ("/Z-4", "/M8/Z-4"))
+    behind = before.replace("M8\n", "").replace("\nG42", "\nM8\nG42")
+    assert "M8 stands elsewhere" in compared(tmp_path, control, before, behind).stdout

@@ -528,3 +528,11 @@ def test_the_tolerance_is_in_the_units_of_the_program() -> None:
     result = call("a.nc", "--machine", "fanuc-30i", "--feed", "per-minute", "--tolerance", "0.002", "-o", "b.nc")
     assert "largest distance of the ends of the blocks from the new path: 0.0" in result.stderr
     assert "too little" in call("a.nc", "--machine", "fanuc-30i", "--tolerance", "0.0001").stderr
+
+
+@pytest.mark.ci
+def test_a_number_without_a_point_is_not_written_with_one() -> None:
+    lines = cam_contour(hexagon()).splitlines()
+    block = next(number for number, line in enumerate(lines) if number > 12 and line.startswith("G1 X"))
+    lines[block] = re.sub(r"\.\d*", "", lines[block], count=1)
+    assert f"line {block + 1}: a number has no point" in refusal("\n".join(lines))

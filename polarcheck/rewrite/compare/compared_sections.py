@@ -42,11 +42,12 @@ class FedPath(SpacePath, frozen=True):
     feed: Floats
 
     def position(self, row: int) -> tuple[float, float, float]:
-        """Return x, y and z of the tool before a row of the trace; NaN before the first move."""
-        move = int(np.searchsorted(self.row, row)) - 1
-        if move < 0:
+        """Return x, y and z of the tool before a row of the trace; NaN where nothing moves."""
+        if not len(self):
             return np.nan, np.nan, np.nan
-        return float(self.end[move].real), float(self.end[move].imag), float(self.z_end[move])
+        move = int(np.searchsorted(self.row, row)) - 1
+        point, z = (self.start[0], self.z_start[0]) if move < 0 else (self.end[move], self.z_end[move])
+        return float(point.real), float(point.imag), float(z)
 
 
 class Stretch(msgspec.Struct, frozen=True):

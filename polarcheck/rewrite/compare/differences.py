@@ -47,8 +47,9 @@ def differences(old: Stretch, new: Stretch, deviation: PathDeviation | None, ter
 
     def moved(step: Step, new_step: Step) -> Difference | None:
         """Return the difference of two orders in their positions on the path."""
-        here, there = _where(old, step.row), _where(new, new_step.row)
-        if not is_same_path or np.abs(np.nan_to_num(np.subtract(here, there))).max() <= 2 * terms.tolerance:
+        here, there = old.path.position(step.row), new.path.position(new_step.row)
+        apart = np.nan_to_num(np.subtract(here, there))[: 2 if old.is_rewritten else 3]
+        if not is_same_path or np.abs(apart).max() <= 2 * terms.tolerance:
             return None
         places = [
             _location(old, step.row, complex(*here[:2]), here[2]),
@@ -228,14 +229,3 @@ def _changes_of_feed(stretch: Stretch) -> list[int]:
     feed = np.nan_to_num(stretch.path.feed, nan=-1)
     changes = (np.diff(feed) != 0) | (np.diff(stretch.path.rapid) != 0) | (np.diff(stretch.path.feed_mode) != 0)
     return [0, *(np.flatnonzero(changes) + 1).tolist()]
-
-
-def _where(part: Stretch, row: int) -> tuple[float, float, float]:
-    """Return the position of the tool before a row, in the coordinates of the path; NaN if it is not known."""
-    path = part.trace.path
-    z = float(path.z[row - 1]) if row and not part.trace.blocks.starts[row] else np.nan
-    if part.section >= 0:
-        point = complex(path.start[row]) * complex(part.trace.path.section_turn[part.section])
-        return point.real, point.imag, z
-    c = 0.0 if part.is_rewritten else float(path.c_angle_before[row]) * part.c_scale
-    return z, float(path.x_before[row]), c

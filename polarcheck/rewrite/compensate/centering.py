@@ -9,7 +9,7 @@ import numpy as np
 from polarcheck.columns.path.moves import Moves
 from polarcheck.columns.path.tool_center import ToolCenter
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Mask
+from polarcheck.foundation.arrays import Floats, Mask
 from polarcheck.geometry.cutter_compensation.offset_path import Phase
 from polarcheck.geometry.tolerances import ZERO
 from polarcheck.rewrite.compensate.chosen_sections import compensated_sections
@@ -24,6 +24,16 @@ from polarcheck.rules.wording.offsets import called_tool
 
 #: The most by which rounding and chords may shift the path, in least increments.
 _INCREMENTS = 1.5
+#: Rules that find a contour of which the control makes another path, or an alarm; they say nothing without G41 and G42.
+_OF_COMPENSATION = (
+    *(
+        "cancel-shorter-than-radius",
+        "inside-arc-smaller-than-radius",
+        "interference",
+        "movement-missing-in-offset-mode",
+    ),
+    *("no-offset-intersection", "overcut", "start-up-shorter-than-radius", "start-up-sweeps-contour"),
+)
 
 
 def centered(original: Original) -> Outcome:
@@ -37,7 +47,7 @@ def centered(original: Original) -> Outcome:
     tool_center: ToolCenter = original.tables["tool_center"]
     compensated = trace.mode.anywhere_in_section(trace.compensation.compensates)
     sections = compensated_sections(trace)
-    _require_path(trace, tool_center, compensated)
+    _require_path(original, tool_center.moves, compensated)
     style, machine = style_of(trace), original.settings.machine
     strokes = _strokes(trace, tool_center.moves, compensated)
     blocks = new_blocks(trace, strokes, style)
@@ -51,7 +61,8 @@ def centered(original: Original) -> Outcome:
     data, origin = with_edits(original, sorted(edits))
     step = float(np.max(trace.lengths.least_step))
     tolerance = _INCREMENTS * step + 1e-3
-    result = read_back_on_part(original, data, origin, tolerance, keeps_sections=True)
+    terms = {"tolerance": tolerance, "is_rewritten": True}
+    result = read_back_on_part(original, data, origin, tolerance, of_sections=terms)
     require_equal(result)
     figures = [
         Figure("sections written as the path of the tool center", len(sections)),
@@ -63,25 +74,14 @@ def centered(original: Original) -> Outcome:
     return Outcome(data, origin, [], figures, list(dict.fromkeys(notes)))
 
 
-def _require_path(trace: Trace, tool_center: ToolCenter, compensated: Mask) -> None:
+def _require_path(original: Original, moves: Moves, compensated: Mask) -> None:
     """Raise RefusedError where the path of the tool center is not known, or not that of the contour."""
-    moves = tool_center.moves
+    trace = original.trace
     unknown = np.flatnonzero(trace.compensation.compensates & trace.path.travels & np.isnan(trace.compensation.radius))
     if len(unknown):
         row = int(unknown[0])
         raise refused_at(trace, row, radius_not_known(trace, row))
-    objections = {
-        "the tool does not fit into this arc": tool_center.inside_arc_too_small,
-        "the tool center would run against the program": tool_center.interferes,
-        "the paths of the tool center do not meet at its end": tool_center.no_intersection,
-        "the control does not know the next move in time": tool_center.movement_missing,
-        "the center of the arc is its start or its end": tool_center.arc_center_on_path,
-    }
-    refusals = [
-        refusal_at(trace, row, f"{text}: there the path is wrong already")
-        for text, rows in objections.items()
-        for row in np.flatnonzero(rows & compensated)[:5].tolist()
-    ]
+    refusals = original.faults(*_OF_COMPENSATION)
     rows = moves.row[~moves.known & compensated[moves.row]]
     text = "where this move begins is not known: write X and C before it"
     refusals += [refusal_at(trace, row, text) for row in rows[:1].tolist()]
@@ -107,21 +107,23 @@ def _strokes(trace: Trace, moves: Moves, compensated: Mask) -> Strokes:
         result.setdefault(row, [])
     for section in np.unique(trace.mode.section[list(result)]).tolist():
         new = [move for move in of_section(trace, moves, section) if move.row in result]
-        for move in _without_short(new, float(trace.lengths.least_step[new[0].row])):
+        for move in _without_short(new, trace.lengths.least_step):
             result[move.row].append(Stroke(move.piece, z=None if move.is_level else move.ends))
     return dict(sorted(result.items()))
 
 
-def _without_short(moves: Sequence[Move], shortest: float) -> list[Move]:
+def _without_short(moves: Sequence[Move], shortest: Floats) -> list[Move]:
     """
-    Return the moves without lines between two others that are shorter than this [mm], as at almost smooth corners.
+    Return the moves without lines between two others that are shorter than that, as at almost smooth corners.
+
+    shortest: of each row [mm].
     """
     result: list[Move] = []
-    for move, following in zip(moves, [*moves[1:], None], strict=True):
+    for move, following in zip(moves, [*moves[1:], None], strict=False):
         piece = move.piece
         if result and following is not None and piece.center is None and move.is_level:
             is_between = abs(following.piece.start - piece.end) <= ZERO
-            if is_between and abs(piece.end - result[-1].piece.end) < shortest and piece.length > ZERO:
+            if is_between and abs(piece.end - result[-1].piece.end) < shortest[move.row] and piece.length > ZERO:
                 continue
         result.append(move)
     return result

@@ -49,6 +49,8 @@ def compensated(original: Original, options: Compensating = Compensating()) -> O
     Raises RefusedError where a section has no contour, the side of the part or R is not known, or the control would
     make another part; TooHardError.
     """
+    if reasons := original.faults():
+        raise RefusedError(reasons)
     trace = original.trace
     moves: Moves = original.tables["tool_center"].moves
     milled: Milled = original.tables["milled"]

@@ -57,7 +57,7 @@ def require_same_part(
     step = float(np.max(trace.lengths.least_step))
     finer = [share * radius for share in _FINER]
     farthest = _FARTHEST * radius
-    result = read_back_on_part(original, data, origin, farthest, finer=finer, keeps_sections=True)
+    result = read_back_on_part(original, data, origin, farthest, finer=finer, of_sections={"has_other_moves": True})
     require_equal(result)
     new_moves: Moves = result.new.tables["tool_center"].moves
     new_milled: Milled = result.new.tables["milled"]

@@ -65,7 +65,7 @@ def refusals(original: Original, is_same: bool) -> list[Refusal]:
     trace = original.trace
     reasons = [*_of_ends(trace)]
     if not is_same:
-        reasons += _of_numbers(trace)
+        reasons += [reason for _, reason in original.unpointed]
         reasons += _of_rows(trace)
     return sorted(dict.fromkeys(reasons), key=lambda reason: reason.line)
 
@@ -77,16 +77,6 @@ def _of_ends(trace: Trace) -> Iterator[Refusal]:
             yield refusal_at(trace, enter, "the polar mode is never left")
         if ((sections.again > enter) & (sections.again < leave)).any():
             yield refusal_at(trace, enter, "the polar mode is switched on again within")
-
-
-def _of_numbers(trace: Trace) -> Iterator[Refusal]:
-    """Numbers without a point that the control counts in increments, though they seem to be meant otherwise."""
-    words = trace.run.words
-    for index in np.flatnonzero(trace.coordinates.is_taken_as_pointed).tolist():
-        written = trace.text.written(words, index)
-        text = f"{written} has no point, and the control counts it in increments: write the point, or"
-        how = "--set control.number_without_point=whole-unit where the control takes it for a whole unit"
-        yield refusal_at(trace, int(trace.run.row[index]), f"{text} {how}")
 
 
 def _of_rows(trace: Trace) -> Iterator[Refusal]:

@@ -163,6 +163,10 @@ def _reasons(trace: Trace, following: Following) -> list[tuple[Mask, str]]:
         (travels & ~(feedrate.written_feed > 0), "F is missing"),
         (not_with_z & path.moves_c & ~path.moves_x, _ON_CYLINDER),
         (not_with_z, f"Z moves beside X and C, with which it is not interpolated in the mode: {trace.machine.title}"),
+        (
+            trace.blocks.with_words(trace.coordinates.is_taken_as_pointed),
+            "a number has no point, and counts increments",
+        ),
     ]
 
 

@@ -83,8 +83,6 @@ def _of_rows(tables: Tables) -> Iterator[tuple[int, str]]:
     order = np.append(False, np.diff(moves.row) < 0)[: len(moves)]
     backwards = trace.blocks.mask_of(moves.row[order])
     infeed = trace.blocks.has(trace.machine.polar.infeed_word) & mode.enters
-    off_by = np.abs(np.abs(moves.start - moves.center) - np.abs(moves.end - moves.center))
-    off_circle = trace.blocks.mask_of(moves.row[(moves.kind != Motion.LINE) & (off_by > trace.machine.arcs.tolerance)])
     unknown_moves = UnknownMoves(trace)
     lost = unknown_moves.lost("X") | unknown_moves.lost(trace.machine.polar.rotary_address)
     corner_words = (*trace.machine.arcs.corners_not_made, ",A")
@@ -107,7 +105,6 @@ def _of_rows(tables: Tables) -> Iterator[tuple[int, str]]:
         (center.movement_missing, "the control does not know the next move in time"),
         (center.inside_arc_too_small, "the cutter does not fit into this arc"),
         ((trace.compensation.side != Side.OFF) & mode.enters, "cutter compensation is in force before the mode"),
-        (off_circle, "this arc does not end on its circle"),
         (unknown, "where the tool center goes is not known"),
         ((without_feed | alone) & ~per_minute, "F is not per minute, so that the speed of the tool is not known"),
         (without_feed | alone, "F is missing"),

@@ -7,12 +7,10 @@ from collections.abc import Iterator, Sequence
 import msgspec
 import numpy as np
 
-from polarcheck.checking.check import check_runs
 from polarcheck.checking.not_evaluated import unexecuted
 from polarcheck.columns.path.tool_center import ToolCenter
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Floats
-from polarcheck.foundation.finding import SEVERITIES, Severity
 from polarcheck.foundation.states import FeedMode
 from polarcheck.rewrite.unroll import unrolled_deviation, unrolled_feeds
 from polarcheck.rewrite.unroll.axis_blocks import Steps, steps_of
@@ -25,28 +23,6 @@ from polarcheck.rewrite.writing.original import Original, read
 from polarcheck.rewrite.writing.outcome import Figure, Outcome, Refusal, RefusedError
 from polarcheck.rewrite.writing.rotary_feed import INVERSE_TIME, notes_on_feed
 from polarcheck.rewrite.writing.style_of import style_of
-from polarcheck.rules.rule import load_all
-
-#: Groups of rules about text that a control reads otherwise, or not at all.
-_GROUPS = ("text", "macro")
-#: Further rules of that kind. Errors of the mode itself, such as a rate of C or a code that it does not allow, end with
-#: it; where the path of the tool center is not certain, the columns say so.
-_RULES = (
-    "arc-center-on-path", "arc-end-off-circle", "arc-off-polar-plane", "arc-radius-too-small", "arc-without-center",
-    "arc-word-of-other-plane", "cancel-on-arc", "incremental-word-of-other-code-system", "linear-axis-never-programmed",
-    "modal-state-wrong-at-entry", "origin-shifted-in-polar", "polar-axis-number-wrong", "polar-shift-incremental",
-    "second-axis-never-programmed", "start-up-on-arc", "wrong-axis-address-in-polar",
-)  # fmt: skip
-
-
-def errors(original: Original) -> Iterator[Refusal]:
-    """Yield the errors of a check in sections, whatever their severity is set to, and allow comments aside."""
-    rules = [rule for name, rule in load_all().items() if rule.group in _GROUPS or name in _RULES]
-    report = check_runs([("", original.tables)], rules, inline=False)
-    for finding in report.findings:
-        if finding.section_line is not None and SEVERITIES[finding.severity] >= Severity.ERROR:
-            yield Refusal(finding.line, f"{finding.message} [{finding.rule}]")
-
 
 #: How far the tool center may leave its path [mm].
 DEFAULT_CHORD_ERROR = 0.005
@@ -75,7 +51,7 @@ def unrolled(original: Original, options: Unrolling) -> Outcome:
     if not sections:
         raise RefusedError([Refusal(0, "there is no polar section in it")])
     not_judged = (Refusal(0, entry.reason) for entry in unexecuted(original.tables) if entry.matters)
-    if reasons := [*errors(original), *refusals(original.tables, sections), *not_judged]:
+    if reasons := [*original.faults(), *refusals(original.tables, sections), *not_judged]:
         raise RefusedError(reasons)
     feed = unrolled_feeds.chosen(trace, options.feed)
     center: ToolCenter = original.tables["tool_center"]

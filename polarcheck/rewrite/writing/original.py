@@ -3,17 +3,32 @@
 from __future__ import annotations
 
 import msgspec
+import numpy as np
 
 from polarcheck.checking import check
 from polarcheck.checking.not_evaluated import unknown_values
 from polarcheck.checking.settings import Settings
 from polarcheck.columns.trace import Trace
 from polarcheck.columns.words.macro_faults import reason_of
+from polarcheck.foundation.finding import SEVERITIES, Severity
 from polarcheck.rewrite.writing.outcome import Refusal, RefusedError
+from polarcheck.rules.rule import load_all
 from polarcheck.rules.tables import Tables
 
 #: Remarks of blocks behind which nobody knows what runs.
 BLOCKS_NOT_KNOWN = ("condition-unknown", "program-unknown", "return-jumps")
+
+
+#: Groups of rules about text that a control reads otherwise, or not at all.
+_GROUPS = ("text", "macro")
+#: Further rules of that kind. Errors of the mode itself, such as a rate of C or a code that it does not allow, stay or
+#: end with it; where the path of the tool center is not certain, the columns say so.
+_RULES = (
+    "arc-center-on-path", "arc-end-off-circle", "arc-off-polar-plane", "arc-radius-too-small", "arc-without-center",
+    "arc-word-of-other-plane", "cancel-on-arc", "incremental-word-of-other-code-system", "linear-axis-never-programmed",
+    "modal-state-wrong-at-entry", "origin-shifted-in-polar", "polar-axis-number-wrong", "polar-shift-incremental",
+    "second-axis-never-programmed", "start-up-on-arc", "wrong-axis-address-in-polar",
+)  # fmt: skip
 
 
 class Original(msgspec.Struct, frozen=True):
@@ -39,6 +54,36 @@ class Original(msgspec.Struct, frozen=True):
         """The variables without a value, those on which sections rest before the others."""
         values = sorted(unknown_values(self.tables), key=lambda value: not value.matters)
         return [Refusal(value.line, value.reason) for value in values]
+
+    @property
+    def unpointed(self) -> list[tuple[int, Refusal]]:
+        """Numbers without a point that the control counts in increments, though they seem to be meant otherwise."""
+        trace, reasons = self.trace, []
+        for index in np.flatnonzero(trace.coordinates.is_taken_as_pointed).tolist():
+            row, written = int(trace.run.row[index]), trace.text.written(trace.run.words, index)
+            text = f"{written} has no point, and the control counts it in increments: write the point, or"
+            how = "--set control.number_without_point=whole-unit where the control takes it for a whole unit"
+            reasons.append((row, Refusal(trace.line(row), f"{text} {how}")))
+        return reasons
+
+    def faults(self, *rules: str) -> list[Refusal]:
+        """
+        Return what makes sections of the program uncertain: errors of a check, whatever the job makes of them and allow
+        comments aside, and numbers without a point.
+
+        rules: names of further rules, of which warnings count, too.
+        """
+        chosen = [rule for name, rule in load_all().items() if rule.group in _GROUPS or name in (*_RULES, *rules)]
+        report = check.check_runs([("", self.tables)], chosen, inline=False)
+        found = [
+            Refusal(finding.line, f"{finding.message} [{finding.rule}]")
+            for finding in report.findings
+            if finding.section_line is not None
+            # Arcs are off their circles where that is but a warning, too, as on a control whose manual was not at hand.
+            and SEVERITIES[finding.severity]
+            >= (Severity.WARNING if finding.rule in rules or finding.rule.startswith("arc-") else Severity.ERROR)
+        ]
+        return found + [reason for row, reason in self.unpointed if self.trace.mode.whole_section[row] >= 0]
 
 
 def read(path: str, data: bytes, settings: Settings) -> Original:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import Any
 
 import msgspec
@@ -121,7 +121,7 @@ def read_back_on_part(
     noted: Collection[str] = (),
     finer: Sequence[float] = (),
     *,
-    keeps_sections: bool = False,
+    of_sections: Mapping[str, Any] | None = None,
 ) -> ReadBack:
     """
     Compare a program whose sections have another form with the original: with the mode or without it, compensated or
@@ -139,8 +139,8 @@ def read_back_on_part(
     noted: groups of rules whose errors are notes: they are about states of the original that matter only in the mode.
     finer: ascending tolerances that are tried first [mm]: the deviation is measured up to the first one that the paths
     keep.
-    keeps_sections: the sections are divided into other moves alone: F outside of them, their depths, values of F and
-    the state at their beginning are compared, and warnings of a check count as its errors do.
+    of_sections: the terms by which sections that are kept are compared, with F outside of them and their state; then
+    warnings of a check count as its errors do.
 
     Raises RefusedError where a position of the original is not known, or the new program cannot be run once.
     """
@@ -168,23 +168,23 @@ def read_back_on_part(
         differences.append(Refusal(line, f"{text} (line {new_line} of the result)"))
     differences += changed_orders(original.trace, new.trace, old_path, new_path, tolerance)
     notes: dict[str, str] = {}
-    lowest = Severity.WARNING if keeps_sections else Severity.ERROR
+    lowest = Severity.WARNING if of_sections else Severity.ERROR
     for rule, _, refusal in _added_findings(original, new, origin, lowest):
         if rule.group in noted:
             notes.setdefault(rule.name, f"line {refusal.line}: {refusal.text}")
         else:
             differences.append(refusal)
-    if keeps_sections:
-        differences += _of_comparison(_comparison(original, new, has_other_moves=True))
-    return ReadBack(new, differences[:_LISTED], largest, list(notes.values()))
+    if of_sections:
+        differences += _of_comparison(_comparison(original, new, **of_sections))
+    return ReadBack(new, list(dict.fromkeys(differences))[:_LISTED], largest, list(notes.values()))
 
 
 def _comparison(original: Original, new: Original, **terms: Any) -> Comparison:
-    """Return the comparison of two programs; terms: those beside the tolerance."""
+    """Return the comparison of two programs; terms: without a tolerance it is the least increment."""
     old_side, new_side = (
         Revision(program.path, program.settings.name, [("", program.tables)]) for program in (original, new)
     )
-    return compared(old_side, new_side, Terms(default_tolerance(old_side, new_side), **terms))
+    return compared(old_side, new_side, Terms(**{"tolerance": default_tolerance(old_side, new_side), **terms}))
 
 
 def require_equal(result: ReadBack) -> None:
