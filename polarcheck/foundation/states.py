@@ -3,10 +3,24 @@
 from __future__ import annotations
 
 import enum
+from typing import TypeVar
 
 MM_PER_INCH = 25.4
+_States = TypeVar("_States", bound=type[enum.IntEnum])
 
 
+def plain(states: _States) -> _States:
+    """
+    Make the names of an enum give its plain numbers.
+
+    NumPy takes 6 us to see that a member of an enum is a number, as long as to compare a column of 5,000 rows with it.
+    """
+    for name, member in states.__members__.items():
+        type.__setattr__(states, name, int(member))
+    return states
+
+
+@plain
 class Motion(enum.IntEnum):
     """The motion that a block makes of its axis words."""
 
@@ -19,6 +33,7 @@ class Motion(enum.IntEnum):
     CYCLE = 9
 
 
+@plain
 class Side(enum.IntEnum):
     """Cutter compensation: tool left or right of the programmed path, seen along the travel."""
 
@@ -27,6 +42,7 @@ class Side(enum.IntEnum):
     RIGHT = 42
 
 
+@plain
 class Corner(enum.IntEnum):
     """How cutter compensation goes round an outer corner; where codes say it, valued like those."""
 
@@ -35,6 +51,7 @@ class Corner(enum.IntEnum):
     INTERSECTION = 451
 
 
+@plain
 class Units(enum.IntEnum):
     """The unit of lengths and feeds in the program."""
 
@@ -42,6 +59,7 @@ class Units(enum.IntEnum):
     MM = 21
 
 
+@plain
 class FeedMode(enum.IntEnum):
     """What F means; valued like the codes of systems B and C."""
 
@@ -50,6 +68,7 @@ class FeedMode(enum.IntEnum):
     PER_REVOLUTION = 95
 
 
+@plain
 class FeedAxes(enum.IntEnum):
     """What F is along where Z moves beside X and C."""
 
@@ -58,6 +77,7 @@ class FeedAxes(enum.IntEnum):
     SPACE = 2
 
 
+@plain
 class ArcFeed(enum.IntEnum):
     """Where F is on arcs in cutter compensation."""
 
@@ -66,6 +86,7 @@ class ArcFeed(enum.IntEnum):
     INNER_CONTOUR = 2
 
 
+@plain
 class Distance(enum.IntEnum):
     """What axis words mean in systems B and C."""
 

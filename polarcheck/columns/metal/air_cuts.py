@@ -27,7 +27,7 @@ from polarcheck.foundation.arrays import (
     folded,
     mask_at,
 )
-from polarcheck.foundation.states import Motion
+from polarcheck.foundation.states import Motion, plain
 from polarcheck.geometry.tolerances import ROUNDING
 
 #: Z is above something if it is so by more than this [mm]: rounding of words, and finishing passes over a face.
@@ -42,6 +42,7 @@ _FAR_OUT = 2.0
 _SAME, _SAME_ANGLE = 2e-3, 1e-3
 
 
+@plain
 class Reason(IntEnum):
     """Why a section cuts nothing: NOT_IN_AIR, and the witnesses."""
 

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, States, column_at, mask_at
-from polarcheck.foundation.states import Motion
+from polarcheck.foundation.states import Motion, plain
 from polarcheck.geometry.cutter_compensation.offset_vectors import Vectors, end_vectors
 from polarcheck.geometry.cutter_compensation.programmed_path import Method, Path, Programmed, fits, moving_rows
 from polarcheck.geometry.plane_path import PlanePath
@@ -28,6 +28,7 @@ _NOWHERE = complex(np.nan, np.nan)
 _KINDS = np.array([Motion.CW, Motion.LINE, Motion.CCW], dtype=np.int16)
 
 
+@plain
 class Phase(enum.IntEnum):
     """The four states around G41 ... G40; lines across corners, and arcs in a ramp, are run as in OFFSET."""
 

@@ -6,10 +6,12 @@ import enum
 
 import numpy as np
 
+from polarcheck.foundation.states import plain
 from polarcheck.program.reading.source import DASH
 from polarcheck.program.reading.surroundings import BLANKS
 
 
+@plain
 class Character(enum.IntEnum):
     """The kind of a character; those above COMMA are not part of a word."""
 

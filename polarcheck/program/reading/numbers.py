@@ -9,11 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from polarcheck.foundation.arrays import Floats, Mask, Table, column_at
+from polarcheck.foundation.states import plain
 from polarcheck.program.reading.source import DASH, Bytes, Positions
 
 Masks = NDArray[np.uint64]
 
 
+@plain
 class NumberFault(enum.IntEnum):
     """The fault of a word."""
 
