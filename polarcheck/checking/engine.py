@@ -18,7 +18,16 @@ from polarcheck.columns.trace import Trace
 from polarcheck.columns.words.allow_mention import Used
 from polarcheck.foundation.arrays import Floats, Mask, Rows, cached_property, different, is_uniform, repeated
 from polarcheck.foundation.errors import TooHardError
-from polarcheck.foundation.finding import NOTE, SEVERITIES, Finding, NotEvaluated, Severity, Silenced, Undecided
+from polarcheck.foundation.finding import (
+    NOTE,
+    SEVERITIES,
+    SEVERITY_NAMES,
+    Finding,
+    NotEvaluated,
+    Severity,
+    Silenced,
+    Undecided,
+)
 from polarcheck.foundation.time_limit import keep_going
 from polarcheck.program.execution.programs import name_at_head
 from polarcheck.program.execution.run import begins_program
@@ -89,6 +98,7 @@ class Engine:
         self.unlisted: list[NotEvaluated] = []
         self.allows = allows
         self.used: set[Used] = set()
+        self._is_long = len(self.trace) > _MANY_ROWS
         self._hits: dict[str, Hits] = dict(known_hits or {})
         self._empty_hits: dict[int, Hits] = {}
         self._columns_seen: dict[str, int] = {}
@@ -103,7 +113,7 @@ class Engine:
             keep_going()
             try:
                 self._hits[rule.name] = self._evaluated(rule)
-                if len(self.trace) > _MANY_ROWS:
+                if self._is_long:
                     self._share_constant_columns()
             except TooHardError as error:
                 self._give_up(rule, error)
@@ -364,8 +374,8 @@ class Engine:
         start, end = places.span(self.tables, element, word_list)
         source = trace.text.source
         line, end_line = source.line_of(start), source.line_of(max(end - 1, start))
-        severity = _severity(rule, hits, element).name.lower()
-        is_note = trace.machine.severities.get(rule.name, severity) == NOTE.name.lower()
+        severity = SEVERITY_NAMES[_severity(rule, hits, element)]
+        is_note = trace.machine.severities.get(rule.name, severity) == SEVERITY_NAMES[NOTE]
         text, values = fill(rule, hits, self.tables, Hit(trace, element, word_list, count))
         if rule.over in ("rows", "sections") and element.row >= 0 and trace.run.depth[element.row]:
             self.rows_in_calls[rule.name, line, start - int(source.line_starts[line - 1]) + 1] = element.row

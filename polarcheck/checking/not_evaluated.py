@@ -294,7 +294,7 @@ def _unknown_columns(tables: Tables, rule: Rule) -> Iterator[Missing]:
         return
     where, columns = called(needs, tables, {})
     # Sections that are not followed have an entry of their own.
-    judged = np.flatnonzero(where & trace.mode.is_followed & ~trace.compensation.sides_are_open)
+    judged = (where & trace.mode.is_followed & ~trace.compensation.sides_are_open).nonzero()[0]
     for kind, (need, column) in enumerate(columns.items()) if len(judged) else ():
         rows = judged[np.isnan(column[judged])]
         if not len(rows):
@@ -310,7 +310,9 @@ def _unknown_columns(tables: Tables, rule: Rule) -> Iterator[Missing]:
 
 def _groups(values: Rows) -> tuple[Rows, Rows]:
     """Return the first index and the count of each value, by rising value; most stand beside their equals."""
-    begins = np.flatnonzero(first_in_run(values))
+    begins = first_in_run(values).nonzero()[0]
+    if len(begins) == 1:
+        return begins, np.array([len(values)])
     first, number = first_of_each(values[begins])
     return begins[first], np.bincount(number, np.diff(np.append(begins, len(values)))).astype(np.int64)
 

@@ -153,7 +153,7 @@ def folded(fold: np.ufunc, group: Rows, values: NDArray[_Number], count: int, no
     none: the value that the fold begins with, and that of a group without values.
     """
     result = np.full(count, none, values.dtype)
-    first = np.flatnonzero(first_in_run(group))
+    first = first_in_run(group).nonzero()[0]
     if len(first):
         fold.at(result, group[first], fold.reduceat(values, first))
     return result
@@ -177,7 +177,8 @@ def side_by_side(*columns: NDArray[Any]) -> Iterator[tuple[Any, ...]]:
 def first_in_run(*columns: NDArray[Any]) -> Mask:
     """Return a mask of the first element of each run of elements that are equal in all of these columns."""
     first, *others = columns
-    begins = np.ones(len(first), bool)
+    begins = np.empty(len(first), bool)
+    begins[:1] = True
     np.not_equal(first[1:], first[:-1], out=begins[1:])
     for column in others:
         begins[1:] |= column[1:] != column[:-1]
@@ -186,12 +187,12 @@ def first_in_run(*columns: NDArray[Any]) -> Mask:
 
 def last_in_run(*columns: NDArray[Any]) -> Mask:
     """Return a mask of the last element of each run of elements that are equal in all of these columns."""
-    return np.append(first_in_run(*columns)[1:], True)[: len(columns[0])]
+    return np.concatenate((first_in_run(*columns)[1:], (True,)))[: len(columns[0])]
 
 
 def runs(*columns: NDArray[Any]) -> tuple[Rows, Rows]:
     """Return the index of the first and of the last element of each run of equal elements."""
-    return np.flatnonzero(first_in_run(*columns)), np.flatnonzero(last_in_run(*columns))
+    return first_in_run(*columns).nonzero()[0], last_in_run(*columns).nonzero()[0]
 
 
 def different(values: NDArray[_Number]) -> NDArray[_Number]:
@@ -210,17 +211,16 @@ def first_of_each(values: NDArray[Any]) -> tuple[Rows, Rows]:
     ordered = values[order]
     begins = first_in_run(ordered)
     number = np.empty(len(values), np.int64)
-    number[order] = np.cumsum(begins) - 1
-    return np.minimum.reduceat(order, np.flatnonzero(begins)) if len(values) else order, number
+    number[order] = begins.cumsum() - 1
+    return np.minimum.reduceat(order, begins.nonzero()[0]) if len(values) else order, number
 
 
-def is_among(values: NDArray[Any], choices: Sequence[float | str]) -> Mask:
-    """Return a mask of the values that are among the choices."""
+def is_among(values: NDArray[Any], choices: Sequence[float | str] | NDArray[Any]) -> Mask:
+    """Return a mask of the values that are among the choices. For few values np.isin takes ten times as long."""
     if len(choices) <= _FEW:
         matches = np.zeros(np.shape(values), bool)
         for value in choices:
-            # Python 3.11 looks up six attributes of the class of an enum, each by a function, where NumPy meets one.
-            matches |= values == (int(value) if isinstance(value, int) else value)
+            matches |= values == value
         return matches
     if values.dtype == np.uint8:
         return np.asarray(mask_at(256, np.array(choices, np.intp))[values])

@@ -24,6 +24,7 @@ NOTE, WARNING, ERROR = Severity.NOTE, Severity.WARNING, Severity.ERROR
 
 #: Severities by their names in reports and configuration.
 SEVERITIES = {severity.name.lower(): severity for severity in Severity}
+SEVERITY_NAMES = {severity: name for name, severity in SEVERITIES.items()}
 
 #: What a check says of a file; unreadable is one that could not be read or checked.
 VERDICTS = PASS, FAIL, UNVERIFIED, UNREADABLE = "pass", "fail", "unverified", "unreadable"

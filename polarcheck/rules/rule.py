@@ -22,6 +22,7 @@ from polarcheck.foundation.digest import blake2b
 from polarcheck.foundation.errors import RuleError, UsageError, suggestion
 from polarcheck.foundation.finding import ERROR as ERROR
 from polarcheck.foundation.finding import NOTE as NOTE
+from polarcheck.foundation.finding import SEVERITY_NAMES
 from polarcheck.foundation.finding import WARNING as WARNING
 from polarcheck.foundation.finding import Severity as Severity
 from polarcheck.rules.causes import DOUBTFUL, SUBJECTS, UNIT, Doubt, subject_of
@@ -105,7 +106,7 @@ def graded(
     given = [(level, mask) for level, mask in ((NOTE, note), (WARNING, warning), (ERROR, error)) if mask is not None]
     severity = np.zeros(len(given[0][1]), np.int16)
     for level, mask in given:
-        severity[mask] = level
+        severity[mask] = int(level)
     return Hits(severity > 0, severity, at, values or {}, follows or {}, undecided, worst)
 
 
@@ -202,11 +203,11 @@ class Rule(Documented, frozen=True):
 
     def level(self, severities: Mapping[str, str]) -> str:
         """Return error, warning, note or off, by the severities that the machine and the job set per rule."""
-        return severities.get(self.name, "off" if self.is_advice else self.severity.name.lower())
+        return severities.get(self.name) or ("off" if self.is_advice else SEVERITY_NAMES[self.severity])
 
     def hits(self, tables: Mapping[str, Any]) -> Hits:
         """Run the rule on these tables."""
-        result = self.function(*(tables[name] for name in self.parameters))
+        result = self.function(*map(tables.__getitem__, self.parameters))
         return result if isinstance(result, Hits) else Hits(result)
 
     def causes(self, rules: Mapping[str, Rule]) -> dict[str, list[str]]:

@@ -323,4 +323,4 @@ def parameters(maker: Callable[..., Any]) -> tuple[str, ...]:
 
 def called(function: Callable[..., Any], tables: Mapping[str, Any], given: Mapping[str, Any]) -> Any:
     """A function with what its parameters name, given values first, then tables."""
-    return function(*(given[name] if name in given else tables[name] for name in parameters(function)))
+    return function(*[given[name] if name in given else tables[name] for name in parameters(function)])

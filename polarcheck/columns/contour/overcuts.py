@@ -216,7 +216,7 @@ class Overcuts:
 
         walls = self._walls_of(np.isnan(self.radius) & ~self.trace.compensation.sides_are_open)
         far = bounds.far_loops(walls, walls) if len(walls) else np.zeros(0, np.int64)
-        walls = walls[~np.isin(walls.loop, far)]
+        walls = walls[~np.isin(walls.loop, far)] if len(far) else walls
         return walls, self.trace.compensation.side[walls.row] == Side.LEFT
 
     @property

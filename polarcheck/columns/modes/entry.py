@@ -228,4 +228,4 @@ class Entry(Columns, frozen=True):
     def is_flat_and_radial(self) -> Mask:
         """The job says of the tool in force that it is a flat end mill that points at the outer diameter."""
         wrong = [n for n, tool in self.trace.tools.of_job.items() if tool.mount == "radial" and tool.shape == "flat"]
-        return np.isin(self.trace.tools.offset_number, wrong)
+        return is_among(self.trace.tools.offset_number, wrong)

@@ -25,7 +25,8 @@ from polarcheck.foundation.arrays import (
 from polarcheck.program.execution.programs import find_programs
 from polarcheck.program.execution.run import Run
 from polarcheck.program.machines.axis_table import FIRST_NAMED, NO_AXIS, NOT_NAMED
-from polarcheck.program.machines.code_tables import code, code_numbers, code_set, renumbered
+from polarcheck.program.machines.code_lists import numbers as numbers_of
+from polarcheck.program.machines.code_tables import code, code_numbers, renumbered
 from polarcheck.program.machines.machine import Machine
 from polarcheck.program.reading.words import Text
 
@@ -115,7 +116,7 @@ class ExecutedBlocks(Lookups, frozen=True):
 
     def with_words(self, words: Rows | Mask) -> Mask:
         """Per row: whether it has one of these executed words, given by indices or as a mask."""
-        words = np.flatnonzero(words) if words.dtype == np.bool_ else words
+        words = words.nonzero()[0] if words.dtype.kind == "b" else words
         if not len(words):
             return self.nowhere
         return mask_at(len(self.run), self.run.row[words])
@@ -201,19 +202,16 @@ class ExecutedBlocks(Lookups, frozen=True):
         parts: list[Rows] = []
         for letter, alone, with_others in _by_letter(words):
             if alone:
-                parts.append(self._of_codes(letter, code_set(alone)))
+                parts.append(self._of_codes(letter, alone))
             if with_others:
                 indices, numbers = (self.g_words, self.g_codes) if letter == "G" else (self.m_words, self.m_codes)
                 parts += [indices[self._with_second_word(word, indices, numbers)] for word in with_others]
         return parts[0] if len(parts) == 1 else np.concatenate((np.zeros(0, np.int64), *parts))
 
-    def _of_codes(self, letter: str, codes: Mask) -> Rows:
-        """The G or M words with these codes (codes.code_set), in order, but not those listed with another word."""
-        order, present, begins = self._by_code[letter]
-        groups = [
-            order[begin:end]
-            for begin, end in (begins[number : number + 2] for number in codes[present].nonzero()[0].tolist())
-        ]
+    def _of_codes(self, letter: str, codes: frozenset[int]) -> Rows:
+        """The G or M words with these codes, in order, but not those listed with another word."""
+        by_code = self._by_code[letter]
+        groups = [by_code[number] for number in by_code.keys() & codes]
         if not groups:
             return np.zeros(0, np.int64)
         number = groups[0] if len(groups) == 1 else np.sort(np.concatenate(groups))
@@ -222,15 +220,16 @@ class ExecutedBlocks(Lookups, frozen=True):
         return self.m_words[number[~self._with_other_word[number]]]
 
     @cached_property
-    def _by_code(self) -> dict[str, tuple[NDArray[np.int32], NDArray[np.int32], Rows]]:
-        """By letter the G or M words grouped by their codes, the codes that there are, and where each begins."""
+    def _by_code(self) -> dict[str, dict[int, NDArray[np.int32]]]:
+        """By letter and code the positions of the words of the code among those of the letter."""
         groups = {}
         for letter, numbers in (("G", self.g_codes), ("M", self.m_codes)):
             # Small numbers are sorted in linear time.
             order = np.argsort(numbers.astype(np.int16), kind="stable").astype(np.int32)
             rising = numbers[order]
-            begins = np.flatnonzero(first_in_run(rising))
-            groups[letter] = order, rising[begins], np.append(begins, len(order))
+            begins = first_in_run(rising).nonzero()[0]
+            spans = zip(rising[begins].tolist(), pairwise([*begins.tolist(), len(order)]), strict=True)
+            groups[letter] = {number: order[begin:end] for number, (begin, end) in spans}
         return groups
 
     def _with_second_word(self, word: str, indices: Rows, numbers: NDArray[np.int32]) -> Mask:
@@ -337,12 +336,12 @@ class ExecutedBlocks(Lookups, frozen=True):
 
 
 @functools.lru_cache(1000)
-def _by_letter(words: tuple[str, ...]) -> tuple[tuple[str, tuple[str, ...], tuple[str, ...]], ...]:
-    """By letter the codes that stand alone, and those with a word beside them, as `M3 P12`."""
+def _by_letter(words: tuple[str, ...]) -> tuple[tuple[str, frozenset[int], tuple[str, ...]], ...]:
+    """By letter the codes that stand alone, and the words of those with a word beside them, as `M3 P12`."""
     split = []
     for letter in "GM":
         of_letter = [word for word in words if word[0] == letter]
         if of_letter:
-            alone = tuple(word for word in of_letter if " " not in word)
+            alone = frozenset(numbers_of(word for word in of_letter if " " not in word))
             split.append((letter, alone, tuple(word for word in of_letter if " " in word)))
     return tuple(split)

@@ -34,6 +34,11 @@ class ModalStates(Lookups, frozen=True):
         """The names of the groups; by code the number of its group (from 1), and the state that it sets."""
         return modal_tables(self.machine)
 
+    @cached_property
+    def _groups_of_words(self) -> NDArray[np.uint8]:
+        """The modal group of each G word, by its number."""
+        return np.asarray(self._modal[1][self.blocks.g_codes])
+
     def state(self, group: str) -> States:
         """The state of a modal group in each row, after its own codes (modal.STATES)."""
         return self._column(f"state {group}", lambda: self._filled(group)[0])
@@ -49,34 +54,30 @@ class ModalStates(Lookups, frozen=True):
 
     def _filled(self, group: str) -> tuple[States, Mask]:
         """The state of a group in each row, and the rows that set it."""
-        names, group_of, state_of = self._modal
+        names, _, state_of = self._modal
+        chosen = (self._groups_of_words == names.index(group) + 1).nonzero()[0]
+        before, power_on = _BEFORE.get(group, 0), getattr(self.machine.power_on, group, "")
+        if not (len(chosen) or power_on or group in ("speed", "motion")):
+            return repeated(np.int16(before), len(self.run)), self.blocks.nowhere
         written = np.zeros(len(self.run), bool)
-        values = self._at_power_on(group)
-        if group in names:
-            chosen = group_of[self.blocks.g_codes] == names.index(group) + 1
-            rows = self.run.row[self.blocks.g_words[chosen]]
-            values[rows] = state_of[self.blocks.g_codes[chosen]]
-            written[rows] = True
+        values = np.full(len(self.run), before, np.int16)
+        if power_on:  # an excerpt may have been begun otherwise
+            values[self.blocks.whole_program] = state_of[code(power_on)]
+        rows = self.run.row[self.blocks.g_words[chosen]]
+        values[rows] = state_of[self.blocks.g_codes[chosen]]
+        written[rows] = True
         if group == "speed":
             # Where G94 and G96 share a group, G94 sets the feed mode and ends constant surface speed.
             ended = self.blocks.listed("constant_surface_speed_ended_by") & ~written
             values[ended] = 0
             written |= ended
-        state = fill_down(values, written | self.blocks.starts, _BEFORE.get(group, 0))
+        state = fill_down(values, written | self.blocks.starts, before)
         unknown = self.blocks.is_unknown("G")
         if group == "motion" and unknown.any():
             values[unknown] = Motion.UNKNOWN
             written |= unknown
         self.__dict__.update({f"sets {group}": written, f"state {group}": state})
         return state.astype(np.int16), written
-
-    def _at_power_on(self, group: str) -> States:
-        """The state before the program selects one, per row; the usual one for an excerpt, else the machine's."""
-        states = np.full(len(self.run), _BEFORE.get(group, 0), np.int16)
-        power_on = getattr(self.machine.power_on, group, "")
-        if power_on:
-            states[self.blocks.whole_program] = self._modal[2][code(power_on)]
-        return states
 
     @cached_property
     def behind_unknown_code(self) -> Mask:

@@ -6,7 +6,7 @@ import numpy as np
 
 from polarcheck.columns.filling import before
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Columns, Mask, cached_property
+from polarcheck.foundation.arrays import Columns, Mask, cached_property, is_among
 from polarcheck.program.machines.code_lists import is_code, numbers
 from polarcheck.program.machines.code_tables import NO_CODE, code_set
 from polarcheck.program.reading.words import NumberFault
@@ -98,7 +98,7 @@ class ModeWords(Columns, frozen=True):
             return trace.blocks.no_words
         kind = trace.blocks.word("L")
         # Without L a lathe takes P0 as the work shift, other numbers as tool offsets.
-        is_work_offset = np.isin(kind, trace.machine.g_codes.data_input_work_offset) | (
+        is_work_offset = is_among(kind, trace.machine.g_codes.data_input_work_offset) | (
             np.isnan(kind) & (trace.blocks.word("P") == 0)
         )
         sets = self.sets_coordinates
@@ -122,7 +122,7 @@ class ModeWords(Columns, frozen=True):
     def changes_tool_offset(self) -> Mask:
         """G10 that changes a tool offset."""
         kind, number = self.trace.blocks.word("L"), self.trace.blocks.word("P")
-        is_tool_offset = np.isin(kind, self.trace.machine.g_codes.data_input_tool_offset) | (
+        is_tool_offset = is_among(kind, self.trace.machine.g_codes.data_input_tool_offset) | (
             np.isnan(kind) & (number > 0)
         )
         return self.listed("data_input") & self.in_rows(is_tool_offset)

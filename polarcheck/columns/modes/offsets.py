@@ -34,6 +34,7 @@ from polarcheck.foundation.arrays import (
     column_at,
     computed,
     different,
+    is_among,
     is_uniform,
     repeated,
 )
@@ -150,7 +151,7 @@ class ToolOffsets(Columns, frozen=True):
         """True for offsets, named in some rows, that are in force in the polar mode of the same program."""
         inside, most = self.mode.in_polar | self.mode.enters, self.tools.offset_count
         used = self.blocks.program[inside] * most + self.tools.offset_number[inside]
-        return np.isin(self.blocks.program[rows] * most + numbers, used)
+        return is_among(self.blocks.program[rows] * most + numbers, used)
 
     @cached_property
     def cutter_diameter(self) -> Floats:
@@ -229,12 +230,12 @@ class ToolOffsets(Columns, frozen=True):
         number_in_p = np.nan_to_num(self.blocks.word("P")[rows])
         base = offsets.geometry_from
         plain = ~self.blocks.has("L")[rows] & (base > 0)
-        is_geometry = np.where(plain, number_in_p > base, np.isin(kind, offsets.geometry))
-        is_tool_offset = plain | is_geometry | np.isin(kind, offsets.wear)
+        is_geometry = np.where(plain, number_in_p > base, is_among(kind, offsets.geometry))
+        is_tool_offset = plain | is_geometry | is_among(kind, offsets.wear)
         is_tool_offset &= number_in_p < _LONGEST_NUMBER
         number = np.where(is_tool_offset, number_in_p - base * (plain & is_geometry), 0).astype(np.int64)
         # Mills give lengths as they give radii: in R.
-        alone = np.isin(kind, offsets.radius_alone)
+        alone = is_among(kind, offsets.radius_alone)
         as_mill = self.blocks.mask_of(rows[alone])
         of_length = ~plain & ~alone & self.blocks.anywhere_in_program(as_mill)[rows]
         steps = self.modal.incremental[rows]
@@ -356,7 +357,7 @@ class ToolOffsets(Columns, frozen=True):
     @cached_property
     def nose_is_of_mill(self) -> Mask:
         """The nose type of the offset in force leaves the programmed point in the cutter center; False if unknown."""
-        return np.isin(self.nose, self.machine.compensation.nose_types)
+        return is_among(self.nose, self.machine.compensation.nose_types)
 
 
 def _first_known(first: Floats, second: Floats) -> Floats:

@@ -7,7 +7,7 @@ import numpy as np
 from polarcheck.columns.filling import before, fill_down, happened
 from polarcheck.columns.modes.executed_blocks import ExecutedBlocks
 from polarcheck.columns.modes.tool_changes import OFFSET_COUNT, called_tools
-from polarcheck.foundation.arrays import Columns, Mask, Rows, cached_property
+from polarcheck.foundation.arrays import Columns, Mask, Rows, cached_property, is_among
 from polarcheck.program.execution.run import Run
 from polarcheck.program.machines.job import Job, Tool
 from polarcheck.program.machines.machine import Machine
@@ -57,7 +57,7 @@ class CalledTools(Columns, frozen=True):
         """The tool in force has edges: T is the tool alone, and D calls the offset. One with a name always has."""
         if self.machine.offsets.called_by == "edge":
             return np.ones(len(self.run), bool)
-        return np.isin(self._t, list(self.run.names))
+        return is_among(self._t, list(self.run.names))
 
     @cached_property
     def calls_edge(self) -> Mask:
@@ -182,7 +182,7 @@ class CalledTools(Columns, frozen=True):
         """T with the offset of another tool, which is called with it, too; T is never called with its own: T0103."""
         call = self.calls_tool & ~self.has_edges & (self.tool > 0)
         is_own = call & (self.tool == self.tool_offset_number)
-        by_tool = np.isin(np.stack([self.tool, self.tool_offset_number]), self.tool[is_own])
+        by_tool = is_among(np.stack([self.tool, self.tool_offset_number]), self.tool[is_own])
         return np.asarray(call & ~by_tool[0] & by_tool[1])
 
     def tool_name(self, tool: int) -> str:

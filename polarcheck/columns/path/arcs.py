@@ -77,6 +77,8 @@ class Arcs(Columns, frozen=True):
 
     def _to_center(self, rows: Rows) -> Points:
         """I + jJ of some rows [mm]; what is not written is 0."""
+        if not len(rows):
+            return np.zeros(0, np.complex128)
         i, j = self.trace.path.to_center
         to_center = np.nan_to_num(i[rows]) + 1j * np.nan_to_num(j[rows])
         if (corners := self.trace.run.corners) is not None:

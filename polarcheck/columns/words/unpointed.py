@@ -6,7 +6,7 @@ import numpy as np
 
 from polarcheck.columns.path.coordinates import MEANT_IN_INCREMENTS
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, cached_property, mask_at, repeated
+from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, cached_property, is_among, mask_at, repeated
 from polarcheck.foundation.states import FeedMode, Units
 from polarcheck.program.reading.numbers import NumberFault
 
@@ -58,7 +58,7 @@ class Unpointed(Columns, frozen=True):
         if not len(reported):
             return self.trace.blocks.nowhere
         blocks = self.trace.text.words.block[reported]
-        return self.trace.blocks.anywhere_in_program(np.isin(self.trace.run.block, blocks))
+        return self.trace.blocks.anywhere_in_program(is_among(self.trace.run.block, blocks))
 
     @property
     def _none(self) -> Rows:
@@ -123,7 +123,7 @@ class Unpointed(Columns, frozen=True):
         trace = self.trace
         if not len(trace.mode.sections) or trace.machine.control.number_without_point == "whole-unit":
             return trace.blocks.no_words
-        has_section = np.isin(trace.blocks.program, trace.blocks.program[trace.mode.sections.enter])
+        has_section = is_among(trace.blocks.program, trace.blocks.program[trace.mode.sections.enter])
         return np.asarray(self._is_slip & has_section[trace.run.row])
 
     @cached_property
@@ -149,7 +149,7 @@ class Unpointed(Columns, frozen=True):
         kinds = trace.machine.g_codes.data_input_tool_offset
         sets = (
             data_input
-            & (np.isin(trace.blocks.word("L"), kinds) | ~trace.blocks.has("L"))
+            & (is_among(trace.blocks.word("L"), kinds) | ~trace.blocks.has("L"))
             & (trace.blocks.word("P") > 0)
         )
         is_small = ~words.has_point & (words.value != 0) & (np.abs(words.value) < MEANT_IN_INCREMENTS)

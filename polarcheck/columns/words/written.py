@@ -207,7 +207,7 @@ class Written:
         words = self.words
         suspects = self._suspects(np.arange(len(words)), _ADDRESS_BITS[words.address])
         calls = words.block[self._g_words[code_set(self.machine.macro.macro_call_codes)[self._g_codes]]]
-        is_argument = np.isin(words.address[suspects], list(_ARGUMENT_SETS)) & np.isin(words.block[suspects], calls)
+        is_argument = is_among(words.address[suspects], list(_ARGUMENT_SETS)) & is_among(words.block[suspects], calls)
         suspects = suspects[~(is_argument | self._is_next_tool(suspects))]
         again = np.sort(self._again(suspects, words.address[suspects])[0])
         first = again[first_in_run(words.block[again])]
@@ -221,7 +221,7 @@ class Written:
         changes = words.block[m[code_set(self.machine.m_codes.tool_change)[code_numbers(words.value[m])]]]
         t = words.block[words.address == ord("T")]
         changes = changes[np.bincount(t, minlength=len(self.text.blocks))[changes] == _TOOLS_OF_CHANGE]
-        return np.asarray((words.address[index] == ord("T")) & np.isin(words.block[index], changes))
+        return np.asarray((words.address[index] == ord("T")) & is_among(words.block[index], changes))
 
     # ---- G codes ----
 
@@ -289,7 +289,7 @@ class Written:
         """The first word of the file with a lower case letter."""
         letter = self.text.source.code[self.words.start]
         index = np.flatnonzero((letter >= ord("a")) & (letter <= ord("z")))
-        index = index[~np.isin(self.words.block[index], self.text.prose.block)]
+        index = index[~is_among(self.words.block[index], self.text.prose.block)]
         return mask_at(len(self.words), index[~self._in_broken_block(index)][:1])
 
     @cached_property
@@ -366,8 +366,8 @@ class Written:
         first = first_in_run(strays.block)
         unreadable = self.words.block[self.words.is_unreadable]
         is_left_over = self.text.source.code[strays.start] == ord(")")
-        is_left_over &= np.isin(strays.block, self.text.comments.block[self.text.nested])
-        index = np.flatnonzero(first & ~np.isin(strays.block, unreadable) & ~is_left_over)
+        is_left_over &= is_among(strays.block, self.text.comments.block[self.text.nested])
+        index = np.flatnonzero(first & ~is_among(strays.block, unreadable) & ~is_left_over)
         return self._habits(index, self._characters(strays.start[index]), block=strays.block, often=1)
 
     def _characters(self, at: Rows) -> Rows:
@@ -399,7 +399,7 @@ class Written:
         """
         text = self.text
         broken = text.comments.block[text.nested | text.unclosed]
-        is_left_over = np.isin(text.prose.block, broken)
+        is_left_over = is_among(text.prose.block, broken)
         return self._habits(np.arange(len(text.prose)), is_left_over, block=text.prose.block, often=0)
 
     @cached_property
@@ -428,7 +428,7 @@ class Written:
         """
         text, spans = self.text, self.text.foreign
         code = text.source.code[spans.start]
-        is_blank = np.isin(code, list(BLANKS))
+        is_blank = is_among(code, list(BLANKS))
         is_counted = (is_blank | _inside(spans.start, text.comments) | _inside(spans.start, text.names)) & ~_inside(
             spans.start, text.outside
         )
@@ -456,7 +456,7 @@ def _groups_that_exclude(machine: Machine) -> NDArray[np.uint8]:
     """For each code number its modal group, from 1; 0 for none, and where two codes of it may stand in one block."""
     names, group_of, _ = modal_tables(machine)
     group = group_of.copy()
-    group[np.isin(group, [names.index(name) + 1 for name in _UNSURE_GROUPS])] = 0
+    group[is_among(group, [names.index(name) + 1 for name in _UNSURE_GROUPS])] = 0
     if machine.control.g_code_system == "A":
         group[code_set(code for key in _OF_OTHER_SYSTEMS for code in machine.codes(key))] = 0
     group[NO_CODE] = 0

@@ -6,6 +6,7 @@ from functools import partial
 from typing import Any, NamedTuple
 
 from polarcheck.foundation.errors import MachineError, UsageError, suggestion
+from polarcheck.foundation.finding import SEVERITY_NAMES
 from polarcheck.foundation.patterns import lazy_pattern
 from polarcheck.program.machines.job import Job, level_of, names_of
 from polarcheck.program.machines.machine import Machine
@@ -116,7 +117,7 @@ def severities(names: Names, job: Job, where: Place, catalogue: Rules, machine: 
     for name in names.selected:
         rule = catalogue.get(name.strip().lower().replace("_", "-"))
         if rule and rule.name not in of_command and rule.level({**machine.severities, **changed}) == "off":
-            changed[rule.name] = rule.severity.name.lower()
+            changed[rule.name] = SEVERITY_NAMES[rule.severity]
     return changed
 
 

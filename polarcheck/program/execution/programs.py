@@ -13,7 +13,7 @@ from typing import NamedTuple, TypeVar
 import msgspec
 import numpy as np
 
-from polarcheck.foundation.arrays import Mask, cached_property, side_by_side, stretch
+from polarcheck.foundation.arrays import Mask, cached_property, is_among, side_by_side, stretch
 from polarcheck.foundation.patterns import lazy_pattern
 from polarcheck.program.execution.run import begins_program, is_code
 from polarcheck.program.machines.machine import Machine
@@ -214,7 +214,7 @@ def find_programs(text: Text) -> Programs:
     for index in numbered.tolist():
         value = float(words.value[index])
         heads.setdefault(int(words.block[index]), (int(value) if value < _NUMBER_LIMIT else None, None))
-    has_words = set(words.block[np.isin(words.block, text.names.block) & (words.address != ord("O"))].tolist())
+    has_words = set(words.block[is_among(words.block, text.names.block) & (words.address != ord("O"))].tolist())
     for start, end, block in zip(text.names.start, text.names.end, text.names.block, strict=True):
         if int(block) not in has_words and int(block) not in heads and not text.blocks.is_macro[block]:
             heads[int(block)] = (None, name_at_head(text.source.excerpt(int(start), int(end))).strip("<>").strip())

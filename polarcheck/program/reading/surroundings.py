@@ -22,7 +22,7 @@ BLANKS = bytes(character for character in (*range(33), 0x7F, 0xA0) if character 
 _SPACE, _OPEN, _CLOSE, _PERCENT, _SEMICOLON, _LESS, _GREATER = b" ()%;<>"
 #: Characters outside the ISO set of controls: NUL and other control characters, and those above 125.
 _IS_FOREIGN = bytes((code < 32 and code not in (9, LF, CR)) or code >= 126 for code in range(256))
-_IS_BLANK = np.isin(np.arange(256), [*BLANKS, LF])
+_IS_BLANK = is_among(np.arange(256), [*BLANKS, LF])
 #: The longest name of a program (30i family).
 _NAME_LENGTH = 32
 #: A file with more tape marks is read as one program: no control could store so many.
@@ -263,7 +263,7 @@ def _percents(code: Bytes, lines: Positions) -> tuple[Positions, Positions]:
         return percents, percents
     line_start = np.append(0, lines + 1)[np.searchsorted(lines, percents)]
     is_mark = ~_has_text(code, line_start, percents) | ~_has_text(code, percents + 1, tails.end)
-    for index in np.flatnonzero(is_mark & np.isin(code[percents - 1], list(b"0123456789"))).tolist():
+    for index in np.flatnonzero(is_mark & is_among(code[percents - 1], list(b"0123456789"))).tolist():
         begin = max(int(line_start[index]), int(percents[index]) - _SHARE_LENGTH)
         is_mark[index] = re.search(_SHARE, code[begin : percents[index]].tobytes()) is None
     blank(code, tails)

@@ -31,7 +31,7 @@ _UPPER[_COLON] = ord("O")
 _STATEMENTS = {b"GOTO": False, b"GO": True, b"DO": True, b"END": True, b"EN": True, b"WHILE": False} | dict.fromkeys(
     (b"POPEN", b"PCLOS"), False
 )
-_BEGINS_STATEMENT = np.isin(np.arange(256), [letters[0] for letters in _STATEMENTS])
+_BEGINS_STATEMENT = is_among(np.arange(256), [letters[0] for letters in _STATEMENTS])
 
 
 class Words(Table, frozen=True, dict=True):
@@ -234,7 +234,7 @@ def _block_of(positions: Positions, starts: Positions) -> Positions:
 
 def _outside_prose(strays: Positions, prose: Ranges, starts: Positions) -> Positions:
     """The % signs outside of blocks with prose, as 50% OF THE SPEED."""
-    return strays[~np.isin(_block_of(strays, starts), _block_of(prose.start, starts))]
+    return strays[~is_among(_block_of(strays, starts), _block_of(prose.start, starts))]
 
 
 def _is_reported(table: _Piece, code: Bytes, is_macro: Mask, starts: Positions) -> Mask:
@@ -481,5 +481,5 @@ def _with_names(words: Words, names: Positions) -> Words:
     """Clear the fault of an O before a program name <...>, which needs no number."""
     if len(names):
         bare = np.flatnonzero((words.fault == NumberFault.NO_DIGITS) & (words.address == ord("O")))
-        words.fault[bare[np.isin(words.end[bare], names)]] = NumberFault.NONE
+        words.fault[bare[is_among(words.end[bare], names)]] = NumberFault.NONE
     return words
