@@ -196,7 +196,8 @@ def test_a_section_without_a_move_has_no_contour() -> None:
     settings = OfPrograms(Options(machine="lsis", tools=("1:radius=0.4",), use_config=False))("")
     with pytest.raises(RefusedError) as error:
         rewritten("a.nc", program.encode(), settings, partial(compensated, options=Compensating("")))
-    assert error.value.refusals[0].line == 3
+    assert error.value.refusals[0].line == 4
+    assert "arc-without-center" in error.value.refusals[0].text
 
 
 @pytest.mark.ci
