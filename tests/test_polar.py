@@ -473,14 +473,6 @@ def test_unknown_feed_and_no_feed() -> None:
 # ---- the machine's axes ----
 
 
-@pytest.mark.ci
-@few
-@given(point, st.floats(-720, 720))
-def test_points_of_x_and_c(place: complex, entry: float) -> None:
-    c_angle = entry + math.degrees(math.atan2(place.imag, place.real))
-    assert abs(polar.to_plane(np.array([abs(place)]), np.array([c_angle]), entry)[0] - place) < 1e-9
-
-
 def c_angles(*moves: Move, section: Any = None, entry: Any = (0.0,)) -> tuple[list[float], list[float]]:
     sections = np.zeros(len(moves), dtype=np.int64) if section is None else np.array(section)
     with np.errstate(all="raise"):
@@ -565,5 +557,5 @@ def test_c_angles_lead_to_the_points(points: list[complex], entry: float) -> Non
     assert c_from[0] == pytest.approx(entry)
     assert c_from[1:] == pytest.approx(c_to[:-1], abs=1e-6)
     for angles, ends in ((c_from, [move.start for move in path]), (c_to, [move.end for move in path])):
-        back = polar.to_plane(np.abs(np.array(ends)), np.array(angles), entry)
+        back = np.abs(ends) * np.exp(1j * np.radians(np.array(angles) - entry))
         assert np.abs(back - np.array(ends)).max() < 1e-6

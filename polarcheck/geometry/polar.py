@@ -146,11 +146,6 @@ def c_sweep(start: Points, end: Points, center: Points, kind: States) -> Floats:
     return np.degrees(turn)
 
 
-def to_plane(x: Floats, c_angle: Floats, entry: Floats | float) -> Points:
-    """Plane points of X [mm, radius] and C [deg]; `entry` is C on the plane's +X side."""
-    return np.asarray(x * np.exp(1j * np.radians(c_angle - entry)))
-
-
 @quiet
 def c_angles(
     start: Points,

@@ -428,7 +428,7 @@ class Workpiece(Columns, frozen=True):
         trace = self.trace
         moving = np.append(-1, np.flatnonzero(trace.axes.moves & (trace.mode.section < 0)))
         last = moving[np.searchsorted(moving, trace.mode.sections.enter) - 1]
-        return self._mask(last[last >= 0])
+        return self.trace.blocks.mask_of(last[last >= 0])
 
     @cached_property
     def _leads_in(self) -> Mask:
@@ -468,30 +468,27 @@ class Workpiece(Columns, frozen=True):
 
     # ---- columns ----
 
-    def _mask(self, rows: Rows) -> Mask:
-        return self.trace.blocks.mask_of(rows)
-
     @cached_property
     def hits_part(self) -> Mask:
         """Rows whose way leads through the finished part, or may, if the axes move in that order."""
-        return self._mask(self.through_part.row)
+        return self.trace.blocks.mask_of(self.through_part.row)
 
     @cached_property
     def hits_bar(self) -> Mask:
         """Rapid moves that pass through the remaining bar, or may."""
-        return self._mask(self.through_bar.row)
+        return self.trace.blocks.mask_of(self.through_bar.row)
 
     @cached_property
     def may_miss_part(self) -> Mask:
         """Of those, the rows that may not."""
         hits = self.through_part
-        return self.hits_part & ~self._mask(hits.row[hits.is_sure])
+        return self.hits_part & ~self.trace.blocks.mask_of(hits.row[hits.is_sure])
 
     @cached_property
     def may_miss_bar(self) -> Mask:
         """Of those, the rows that may not."""
         hits = self.through_bar
-        return self.hits_bar & ~self._mask(hits.row[hits.is_sure])
+        return self.hits_bar & ~self.trace.blocks.mask_of(hits.row[hits.is_sure])
 
     @cached_property
     def precedes_idle_plunge(self) -> Mask:
@@ -524,7 +521,7 @@ class Workpiece(Columns, frozen=True):
     def plunges(self) -> Mask:
         """Rows that go down to their place, of those with all moves in rapid traverse."""
         moves = self._with_all_rapids
-        return self._mask(moves.row[moves.plunges])
+        return self.trace.blocks.mask_of(moves.row[moves.plunges])
 
     @cached_property
     def is_rapid(self) -> Mask:

@@ -73,4 +73,4 @@ def entry_places(
 
 def _turned(direction: Points, angle: Floats) -> Points:
     """Directions turned by angles [deg]."""
-    return np.round(polar.to_plane(np.ones(len(angle)), angle, 0.0) * direction, _DIGITS)
+    return np.round(np.exp(1j * np.radians(angle)) * direction, _DIGITS)

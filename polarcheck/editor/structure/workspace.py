@@ -56,9 +56,9 @@ class Workspace:
     ) -> None:
         self.document, self._folders, self._machine_of = document, folders, machine_of
         self.is_complete = True
-        self._documents: dict[str, Document] = {_real(document.path): document}
+        self._documents: dict[str, Document] = {os.path.realpath(document.path): document}
         self._opened = {
-            _real(document_opened.path): document_opened
+            os.path.realpath(document_opened.path): document_opened
             for document_opened in opened
             if document_opened.uri != document.uri
         }
@@ -69,7 +69,7 @@ class Workspace:
     def matching(self, pattern: re.Pattern[bytes]) -> Iterator[Document]:
         """Yield the documents whose bytes match a pattern: this one, the open ones, those in the folders."""
         yield self.document
-        seen = {_real(self.document.path)}
+        seen = {os.path.realpath(self.document.path)}
         for real, document in self._opened.items():
             seen.add(real)
             if pattern.search(document.text.data):
@@ -77,7 +77,7 @@ class Workspace:
         for path in self._listed():
             if not self.has_time():
                 return
-            real = _real(path)
+            real = os.path.realpath(path)
             if real in seen:
                 continue
             seen.add(real)
@@ -131,8 +131,8 @@ class Workspace:
         """Return the document of a file: one below the folders, or in a folder of called programs."""
         data = self._read(path)
         if data is None:
-            folders = [Path(_real(folder)) for folder in self.document.folders]
-            if not any(Path(_real(path)).is_relative_to(folder) for folder in folders):
+            folders = [Path(os.path.realpath(folder)) for folder in self.document.folders]
+            if not any(Path(os.path.realpath(path)).is_relative_to(folder) for folder in folders):
                 return None
             with contextlib.suppress(OSError), bounded.only_below(folders):
                 data = bounded.read_file(path, _LARGEST, "")
@@ -144,8 +144,8 @@ class Workspace:
         if pattern is None:
             return []
         paths = [path for path in self._listed() if pattern.fullmatch(os.path.basename(path))]  # noqa: PTH119
-        folder = _real(caller.path.parent)
-        paths.sort(key=lambda path: _real(Path(path).parent) != folder)
+        folder = os.path.realpath(caller.path.parent)
+        paths.sort(key=lambda path: os.path.realpath(Path(path).parent) != folder)
         contents = ((path, self._read(Path(path))) for path in paths[:_MOST_NAMED])
         return [self._of_file(Path(path), data) for path, data in contents if data is not None]
 
@@ -155,7 +155,7 @@ class Workspace:
         return self._documents[real]
 
     def _of_file(self, path: Path, data: bytes) -> Document:
-        real = _real(path)
+        real = os.path.realpath(path)
         if real in self._opened:
             return self._of_open(real, self._opened[real])
         if real not in self._documents:
@@ -164,10 +164,6 @@ class Workspace:
             uri = path.absolute().as_uri()
             self._documents[real] = Document(uri, path, text, *self._machine_of(path))
         return self._documents[real]
-
-
-def _real(path: str | Path) -> str:
-    return os.path.realpath(path)
 
 
 def naming(keys: Sequence[int | str]) -> re.Pattern[bytes]:

@@ -50,7 +50,7 @@ class _Run:
         for folder in [named] if named else _folders(self.words):
             if os.path.isdir(folder):  # noqa: PTH112  pathlib is slow
                 store = Store(folder, code_digest(), b"", links=bool(named))
-                if store.has_entries:
+                if store.is_own_folder():
                     key = folder_key(named) if named else user_key()
                     return Store(folder, code_digest(), key, links=bool(named)) if key else None
         return None

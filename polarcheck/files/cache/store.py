@@ -89,11 +89,6 @@ class Store:
                 self._shards[shard] = merged
                 self._write_sealed(shard, msgspec.msgpack.encode(merged))
 
-    @property
-    def has_entries(self) -> bool:
-        """Return True if this version of the code has written something here."""
-        return self._is_own_folder()
-
     def run(self, digest: bytes) -> bytes | None:
         """Return the bytes of a whole run; None if there are none."""
         with contextlib.suppress(OSError, ValueError):
@@ -133,7 +128,7 @@ class Store:
 
     def _sealed(self, name: str, limit: int) -> bytes:
         """Return the content of a file; raises OSError or ValueError if there is none, or its seal is broken."""
-        if not self._is_own_folder():
+        if not self.is_own_folder():
             raise ValueError("another folder")
         data = _read_file(self._path(name), _SEAL + limit)
         if data[:_SEAL] != self._seal(name, data[_SEAL:]):
@@ -143,7 +138,7 @@ class Store:
     def _write_sealed(self, name: str, data: bytes) -> None:
         _replace(self._path(name), self._seal(name, data) + data)
 
-    def _is_own_folder(self) -> bool:
+    def is_own_folder(self) -> bool:
         """Return False if the folder, or that of the version in it, is a link: it may lead anywhere."""
         return (self._links or _is_folder(self._root)) and _is_folder(self._folder)
 
@@ -171,7 +166,7 @@ class Store:
         try:
             os.mkdir(self._folder)  # noqa: PTH102
         except FileExistsError:
-            return self._is_own_folder()
+            return self.is_own_folder()
         self._remove_other_versions()
         return True
 
