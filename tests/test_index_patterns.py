@@ -39,6 +39,9 @@ def told(lines: list[str]) -> list[tuple[str, str]]:
         (["0.", "120.", "180."], "3 DEG"),
         (["0.", "30.", "90.", "200."], "4 SLOTS"),
         (["0.", "90.", "180.", "300."], "SLOTS 14 LONG"),
+        (["0.", "90.", "#500", "270."], "4 SLOTS"),
+        (["#500", "120.", "250."], "3 SLOTS"),
+        (["0.", "72.", "144.", "216.", "[#101+288.]"], "SLOTS"),
     ],
 )
 def test_angles_that_are_meant_are_not_told(angles: list[str], comment: str) -> None:

@@ -31,6 +31,8 @@ def off_the_division(trace: Trace) -> Iterator[Correction]:
         return
     row = trace.run.row[words]
     angle = trace.run.words.value[words]
+    if np.isnan(angle).any():
+        return
     enter = trace.mode.sections.enter
     section = np.searchsorted(enter, row)
     has_section = section < np.searchsorted(enter, np.append(row[1:], len(trace)))
