@@ -284,7 +284,7 @@ def test_moves_behind_the_contour_keep_their_code_and_feed() -> None:
         (with_square("T0808\n"), "8:radius=4", 9, "no tool offset is in force"),
         (with_square(SQUARE, "X38. F200\nZ-6.\nC30.\nZ-5."), "8:radius=4", 10, "choose with --side left or right"),
         (with_square("X90. Z2.", "X90. Z2. G42"), "8:radius=4", 8, "G41 or G42 is in force where the mode is switched"),
-        (with_square("G12.1", "G12.1\nG12.1"), "8:radius=4", 9, "the polar mode is switched on within itself"),
+        (with_square("G12.1", "G12.1\nG12.1"), "8:radius=4", 9, "the polar mode is switched on again within"),
         (with_square("\nX-38.0 C19.0", "\nX[-38.] C19."), "8:radius=4", 12, "its words are expressions"),
         (with_square("\nX-38.0 C19.0", "\n#1=-38.\nX#1 C19."), "8:radius=4", 13, "its words are expressions"),
         ("O1\nG0 X60. C0\nM30\n", "8:radius=4", 0, "the program has no polar section"),

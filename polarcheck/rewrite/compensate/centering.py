@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from polarcheck.checking.not_known import position_not_known
 from polarcheck.columns.path.moves import Moves
 from polarcheck.columns.path.tool_center import ToolCenter
 from polarcheck.columns.trace import Trace
@@ -17,8 +18,9 @@ from polarcheck.rewrite.compensate.compensated_blocks import Stroke, Strokes, ne
 from polarcheck.rewrite.compensate.section_moves import Move, of_section
 from polarcheck.rewrite.writing.new_blocks import NewBlock, edit_before, edits_of, with_edits
 from polarcheck.rewrite.writing.original import Original
-from polarcheck.rewrite.writing.outcome import Figure, Outcome, RefusedError, radius_not_known, refusal_at, refused_at
+from polarcheck.rewrite.writing.outcome import Figure, Outcome, RefusedError, radius_not_known
 from polarcheck.rewrite.writing.reading_back import read_back_on_part, require_equal
+from polarcheck.rewrite.writing.refused_sections import Check, refusals_in_sections
 from polarcheck.rewrite.writing.style_of import style_of
 from polarcheck.rules.wording.offsets import called_tool
 
@@ -77,21 +79,16 @@ def centered(original: Original) -> Outcome:
 def _require_path(original: Original, moves: Moves, compensated: Mask) -> None:
     """Raise RefusedError where the path of the tool center is not known, or not that of the contour."""
     trace = original.trace
-    unknown = np.flatnonzero(trace.compensation.compensates & trace.path.travels & np.isnan(trace.compensation.radius))
-    if len(unknown):
-        row = int(unknown[0])
-        raise refused_at(trace, row, radius_not_known(trace, row))
-    refusals = original.faults(*_OF_COMPENSATION)
-    rows = moves.row[~moves.known & compensated[moves.row]]
-    text = "where this move begins is not known: write X and C before it"
-    refusals += [refusal_at(trace, row, text) for row in rows[:1].tolist()]
-    if moves.allowance.any():
-        row = int(moves.row[np.argmax(moves.allowance != 0)])
-        refusals.append(refusal_at(trace, row, "an infeed cycle makes the passes of its section"))
-    slower = moves.row[(moves.arc_share != 1) & compensated[moves.row]]
-    text = "F along this arc is that of the contour, not of the tool center: switch that off before"
-    refusals += [refusal_at(trace, row, text) for row in slower[:1].tolist()]
-    if refusals:
+    is_unknown = trace.compensation.compensates & trace.path.travels & np.isnan(trace.compensation.radius)
+    if refusals := list(refusals_in_sections(trace, [(is_unknown, radius_not_known)])):
+        raise RefusedError(refusals[:1])
+    of_contour = trace.blocks.mask_of(moves.row[moves.arc_share != 1])
+    checks: list[Check] = [
+        (trace.blocks.mask_of(moves.row[~moves.known]) & compensated, position_not_known),
+        (trace.blocks.mask_of(moves.row[moves.allowance != 0]), "an infeed cycle makes the passes"),
+        (of_contour & compensated, "F along this arc is that of the contour, not of the tool center: switch that off"),
+    ]
+    if refusals := [*original.faults(*_OF_COMPENSATION), *refusals_in_sections(trace, checks)]:
         raise RefusedError(sorted(refusals, key=lambda refusal: refusal.line))
 
 

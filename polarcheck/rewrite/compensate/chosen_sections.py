@@ -14,6 +14,7 @@ from polarcheck.geometry.tolerances import ADJUSTMENT, ROUNDING
 from polarcheck.program.machines.code_lists import expanded
 from polarcheck.rewrite.compensate.section_moves import Move, of_section
 from polarcheck.rewrite.writing.outcome import Refusal, RefusedError, radius_not_known, refusal_at, refused_at
+from polarcheck.rewrite.writing.refused_sections import AGAIN, refusals_in_sections
 from polarcheck.rules.wording.offsets import called_tool, example, to_give
 
 
@@ -72,9 +73,8 @@ def _require_sound_switches(trace: Trace) -> None:
     offsets are set in it.
     """
     compensation, mode = trace.compensation, trace.mode
-    again = np.flatnonzero(mode.enters_again)
-    if len(again):
-        raise refused_at(trace, int(again[0]), "the polar mode is switched on within itself")
+    if again := list(refusals_in_sections(trace, [(mode.enters_again, AGAIN)])):
+        raise RefusedError(again)
     left = np.flatnonzero(mode.sections.returned)
     if len(left):
         raise refused_at(trace, int(mode.sections.enter[left[0]]), "what leaves the polar mode is not in this program")

@@ -3,18 +3,24 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 
 import numpy as np
 
+from polarcheck.checking.not_known import position_not_known
 from polarcheck.columns.path.moves import Moves
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Mask
 from polarcheck.foundation.states import FeedMode
 from polarcheck.program.machines.machine import Machine
 from polarcheck.rewrite.convert.doubtful_values import Basis
 from polarcheck.rewrite.writing.original import Original
-from polarcheck.rewrite.writing.outcome import Refusal, refusal_at
+from polarcheck.rewrite.writing.outcome import Refusal
+from polarcheck.rewrite.writing.refused_sections import (
+    AGAIN,
+    Check,
+    checks_of_sections,
+    refusals_in_sections,
+    refusals_of_ends,
+)
 
 #: Shares of F that differ by less, by the larger one, are the same.
 _SAME_SHARE = 1e-9
@@ -63,45 +69,28 @@ def refusals(original: Original, is_same: bool) -> list[Refusal]:
     is_same: the words of sections stay as they are, so that it does not matter what they come to.
     """
     trace = original.trace
-    reasons = [*_of_ends(trace)]
+    again = (trace.mode.enters_again, AGAIN)
+    checks = [again] if is_same else [*checks_of_sections(trace, trace.mode.is_followed), *_of_rows(trace)]
+    reasons = [*refusals_of_ends(trace), *refusals_in_sections(trace, checks)]
     if not is_same:
         reasons += [reason for _, reason in original.unpointed]
-        reasons += _of_rows(trace)
     return sorted(dict.fromkeys(reasons), key=lambda reason: reason.line)
 
 
-def _of_ends(trace: Trace) -> Iterator[Refusal]:
-    sections = trace.mode.sections
-    for number, (enter, leave) in enumerate(zip(sections.enter.tolist(), sections.leave.tolist(), strict=True)):
-        if not sections.left[number] or sections.returned[number] or leave >= len(trace):
-            yield refusal_at(trace, enter, "the polar mode is never left")
-        if ((sections.again > enter) & (sections.again < leave)).any():
-            yield refusal_at(trace, enter, "the polar mode is switched on again within")
-
-
-def _of_rows(trace: Trace) -> Iterator[Refusal]:
+def _of_rows(trace: Trace) -> list[Check]:
     path, mode = trace.path, trace.mode
-    inside = mode.in_polar
-    polar = trace.machine.polar
-    moving = path.travels & inside
+    moving = path.travels & mode.in_polar
     # Where the tool stands before a line does not matter: posts of some controls position it behind the switch.
     unknown = moving & (np.isnan(path.end) | (path.is_arc & np.isnan(path.start)))
     off_by = np.abs(np.abs(path.start - path.center) - np.abs(path.end - path.center))
     off_circle = path.is_arc & moving & (off_by > trace.machine.arcs.tolerance)
     on_sub_spindle = trace.modal.on_sub_spindle & mode.enters
     feed_mode = trace.feedrate.modal_feed_mode
-    checks: list[tuple[Mask, str]] = [
+    return [
         (on_sub_spindle, "the sub-spindle turns the plane, Z and G41 round by builder: convert its sections by hand"),
-        (inside & ~mode.is_followed, "the axes of this section are not followed"),
-        (inside & (trace.axes.linear_axis != ord("X")), "the linear axis of this section is not X"),
-        (trace.run.unknown & inside, "what this block does is not known"),
-        (trace.blocks.has(polar.infeed_word) & mode.enters, "the passes of an infeed cycle are not converted"),
-        (trace.modal.in_cycle & trace.axes.moves & inside, "a cycle in the mode is not converted"),
-        (unknown, "where the tool goes is not known"),
+        (unknown, position_not_known),
         (off_circle, "this arc does not end on its circle"),
         (path.is_arc & moving & np.isnan(path.center), "the center of this arc is not known"),
         (mode.enters & (path.frames is not None), "the program shifts or turns its coordinates by frames"),
         ((feed_mode == FeedMode.INVERSE_TIME) & moving, "inverse time in the mode is not converted"),
     ]
-    for hits, text in checks:
-        yield from (refusal_at(trace, row, text) for row in np.flatnonzero(mode.first_in_section(hits)).tolist())

@@ -142,7 +142,7 @@ def _reasons(trace: Trace, following: Following) -> list[tuple[Mask, str]]:
     without_f = (mode == FeedMode.INVERSE_TIME) & ~trace.blocks.has("F")
     return [
         (np.bincount(run.block, minlength=1)[run.block] > 1, "its blocks run several times"),
-        (_is_computed(trace), "its blocks are computed, or stand in another file"),
+        (_is_computed(trace), "its blocks are computed"),
         (trace.mode.contours_outside, "C beside this code is no plain move: the control follows the contour by itself"),
         (following.jump_targets, "a jump may lead to this block"),
         (modal.state("distance") == Distance.INCREMENTAL, "distances are in force, not coordinates"),
@@ -194,11 +194,7 @@ def _is_computed(trace: Trace) -> Mask:
     letter = code[np.minimum(words.start, len(code) - 1)]
     letter = np.where((letter >= ord("a")) & (letter <= ord("z")), letter - 32, letter)
     named = (words.address < 128) & (letter != words.address) & (letter != ord(":"))
-    source = trace.text.source
-    computed = trace.blocks.with_words(named) | trace.text.blocks.is_macro[run.block]
-    if source.parts:
-        computed |= trace.blocks.line >= source.parts[0].first_line
-    return computed
+    return trace.blocks.with_words(named) | trace.text.blocks.is_macro[run.block]
 
 
 def _first_reason(trace: Trace, candidate: Stretch, reasons: list[tuple[Mask, str]]) -> Refusal | None:
