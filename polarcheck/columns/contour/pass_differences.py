@@ -168,7 +168,10 @@ class PassDifferences(Columns, frozen=True):
         for ramp in (1, 0):
             for number, stretches in enumerate([*written, *alike]):
                 for first, last in stretches:
-                    before, behind = np.searchsorted(travels, first) - ramp, np.searchsorted(travels, last) + ramp
+                    before, behind = (
+                        int(np.searchsorted(travels, first)) - ramp,
+                        int(np.searchsorted(travels, last)) + ramp,
+                    )
                     column[travels[max(before, 0)] : travels[min(behind, len(travels) - 1)] + 1] = number
         return column
 
