@@ -216,8 +216,8 @@ def outside(trace: Trace, steps: Sequence[Step], rows: Rows, terms: Terms) -> St
         positions = [column[rows[0]] for column in earlier]
         named = [trace.blocks.has(*words)[row] for words in written]
         columns = [
-            _following_on(here, start, np.where(names, end, np.nan))
-            for here, (start, end), names in zip(positions, columns, named, strict=True)
+            _following_on(here, np.where(names, end, np.nan))
+            for here, (_, end), names in zip(positions, columns, named, strict=True)
         ]
         if not np.isnan(direction := _direction_behind(trace, int(rows[-1]))):
             # The angle beside the switch that ends these rows stands for a move of C there.
@@ -283,7 +283,7 @@ def _without_unknown(start: Floats, end: Floats) -> tuple[Floats, Floats]:
     return filled[::2], filled[1::2]
 
 
-def _following_on(here: float, start: Floats, end: Floats) -> tuple[Floats, Floats]:
+def _following_on(here: float, end: Floats) -> tuple[Floats, Floats]:
     """
     Let each move begin where the previous one ends, and an axis that it does not name stay at its last named position.
 

@@ -58,14 +58,8 @@ def measured(
     if len(unknown):
         text = "where the tool is before this move is not known: a tool is called, or an axis referenced"
         return Measured([Refusal(_line(old, steps, int(unknown[0])), text)])
-    differences += _places(old, run, steps)
     distance = _distance(old, center.moves, run, steps)
-    far = np.flatnonzero(~(distance <= chord_error + EXACT))
-    if len(far):
-        worst = int(far[np.argmax(distance[far])])
-        text = f"the tool would be {distance[worst]:.4f} mm away from its path, above {chord_error:.4f} mm"
-        differences.append(Refusal(_line(old, steps, worst), text))
-    differences += _speeds(old, run, steps)
+    differences += _of_blocks(old, run, steps, distance, chord_error)
     moves = center.moves
     at_feed = old.axes.motion[moves.row] != Motion.RAPID
     times = float(np.nansum(moves.time[at_feed])), float(run.time[~steps.is_rapid].sum())
@@ -144,17 +138,6 @@ class _Run:
             self.x_rate = np.where(step == 0, 0.0, 60 * np.abs(step) / self.time)
 
 
-def _places(old: Trace, run: _Run, steps: Steps) -> Iterator[Refusal]:
-    """Yield a refusal for the first block that does not end at its intended position."""
-    scale = (x_factor(old) * old.lengths.least_step)[steps.row]
-    differs = ~(np.abs(run.x - steps.x * scale) <= EXACT) | ~(np.abs(run.turn - steps.turn) <= EXACT)
-    z = steps.z * old.lengths.least_step[steps.row]
-    differs |= ~np.isnan(z) & ~(np.abs(run.z - z) <= EXACT)
-    differs |= run.is_rapid
-    for index in np.flatnonzero(differs)[:1].tolist():
-        yield Refusal(_line(old, steps, index), "X, C or Z would not be where the tool center goes")
-
-
 def _distance(old: Trace, moves: Moves, run: _Run, steps: Steps) -> Floats:
     """
     Return the largest distance of the tool center from its path in each block [mm], computed from the actual C, not
@@ -187,10 +170,21 @@ def _distance(old: Trace, moves: Moves, run: _Run, steps: Steps) -> Floats:
     return distance
 
 
-def _speeds(old: Trace, run: _Run, steps: Steps) -> Iterator[Refusal]:
-    """Blocks in which the tool would be faster than the F of the section, or an axis faster than its limit."""
-    limits = old.machine.limits
+def _of_blocks(old: Trace, run: _Run, steps: Steps, distance: Floats, chord_error: float) -> Iterator[Refusal]:
+    """
+    Yield the blocks that end elsewhere than intended or lead the tool off its path, in which the tool would be faster
+    than the F of the section, or an axis faster than its limit: of each kind the first, of distances the largest.
+    """
+    limits, least_step = old.machine.limits, old.lengths.least_step[steps.row]
+    x, z = steps.x * x_factor(old)[steps.row] * least_step, steps.z * least_step
+    elsewhere = ~(np.abs(run.x - x) <= EXACT) | ~(np.abs(run.turn - steps.turn) <= EXACT) | run.is_rapid
+    elsewhere |= ~np.isnan(z) & ~(np.abs(run.z - z) <= EXACT)
+    # The largest, or one that is not known.
+    far = ~(distance <= chord_error + EXACT) & (np.arange(len(distance)) == np.argmax(np.append(distance, 0.0)))
+    away = f"the tool would be {distance[far].sum():.4f} mm away from its path, above {chord_error:.4f} mm"
     checks = (
+        (elsewhere, "X, C or Z would not be where the tool center goes"),
+        (far, away),
         (~(run.time > 0), "how long this takes is not known"),
         (run.time < steps.time * (1 - FEED_SHARE), "the tool would be faster than in the mode"),
         (run.c_rate > limits.c_feed * (1 + FEED_SHARE), "C would be above its limit"),

@@ -63,7 +63,7 @@ def feeds(trace: Trace, steps: Steps, time: Floats, feed: str) -> Floats:
     exact = block_feeds(method_of(trace, feed), steps.radius_step, steps.turn, steps.rise, time / 60, unit)
     exact = np.minimum(exact, _LARGEST)
     if feed == "stepwise":
-        exact = _stepwise(exact, steps)
+        exact = _stepwise(exact)
     return _rounded(exact)
 
 
@@ -76,7 +76,7 @@ def _rounded(feed: Floats) -> Floats:
     return np.where(feed > 0, np.maximum(np.floor(feed * scale * (1 + 1e-12)), 1) / scale, feed)
 
 
-def _stepwise(feed: Floats, steps: Steps) -> Floats:
+def _stepwise(feed: Floats) -> Floats:
     """Give runs of blocks their lowest F, as long as that is no more than a tenth below any of them."""
     values = feed.tolist()
     begin = 0
