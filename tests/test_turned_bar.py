@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 from cases import looped
 from programs import report_of, tables_of
@@ -159,6 +161,18 @@ def test_a_contour_that_comes_round_ends_inside_the_bar_and_leaves_nothing() -> 
     assert (
         told(f"G21 G98 G40{MILL}G0 X60. Z2. C0/G12.1/{contour.replace('C15.058', 'C4.058')}", 5, diameter=40.775) != []
     )
+
+
+@pytest.mark.parametrize("turn", [1, -1])
+def test_a_contour_whose_extensions_meet_in_its_corner_leaves_nothing(turn: int) -> None:
+    """The end of the first cut is where the last one begins, but for the rounding of its products."""
+    points = "X-46.421 C3.676/X-34.866 C5.664/X0 C20./X34.866 C5.664/X34.866 C-5.664/X0 C-20./X-46.421 C-3.676"
+    way = f"G1 X-6. C30. F1500/X-55.885 C5.749/Z-5. F300/G41 X-53.608 C2.44 F80/{points}/C3.676/C7.476/"
+    contour = f"{way}G40 X-55.421 F1500/Z2./G13.1/G0 Z50./M5/M30"
+    if turn < 0:
+        contour = re.sub(r"C(-?)(?=[\d.])", lambda word: "C" if word[1] else "C-", contour).replace("G41", "G42")
+    start = f"G21 G98 G40{MILL}G0 X60. Z2. C0/G12.1/"
+    assert told(start + contour, 2, diameter=50) == []
 
 
 def test_the_page_shows_the_bar_that_each_section_meets() -> None:

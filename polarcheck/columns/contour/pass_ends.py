@@ -86,7 +86,7 @@ class PassEnds(Columns, frozen=True):
                 (along.conj() * (point - path.start[wall])).imag / np.abs(along)
                 for point in (path.start[of], path.end[of])
             ]
-            return np.asarray(np.minimum(*sides) * np.maximum(*sides) <= 0)
+            return np.asarray((np.minimum(*sides) <= ROUNDING) & (np.maximum(*sides) >= -ROUNDING))
 
         with np.errstate(invalid="ignore", divide="ignore"):
             return np.asarray((first != last) & parted(first, last) & parted(last, first))
