@@ -982,3 +982,63 @@ def test_an_order_beside_a_contour_stands_where_it_stood_on_the_path_of_the_tool
     before = program(control, ("/Z-4", "/M8/Z-4"))
     behind = before.replace("M8\n", "").replace("\nG42", "\nM8\nG42")
     assert "M8 stands elsewhere" in compared(tmp_path, control, before, behind).stdout
+
+
+#: The hexagon of some controls with X as a diameter in the place of a radius, or with what makes it one elsewhere.
+MEASURES = {
+    "siemens-transmit": [
+        [("DIAMOF/", ""), ("X28", "X56"), ("X18", "X36"), ("X-18", "X-36")],
+        [("DIAMOF/TRANSMIT", "TRANSMIT/DIAMOF")],
+    ],
+    "hurco": [[("G7/G101", "G101/G7")], [("G109/G8", "G8/G109")]],
+    "mazak-integrex": [
+        [("G10.9 X0/", ""), ("X28.", "X56."), ("X18.", "X36."), ("X-18.", "X-36.")],
+        [("G10.9 X0/G17 XC", "G17 XC/G10.9 X0")],
+    ],
+}
+_AS_RADIUS = "G1 X28. {0}0 F1000/Z-4. F200/G42 X18. {0}0 F150/{0}10.392/X0 {0}20.785/X-18. {0}10.392/{0}-10.392/"
+_AS_RADIUS += "X0 {0}-20.785/X18. {0}-10.392/{0}0/G40 X28./Z2. F1000/"
+WITH_RADII = {
+    "siemens-transmit": PROGRAMS["siemens-transmit"],
+    "hurco": "O1/G21 G90 G94 G40 G97/T0101/M131/M33 S3000/G0 X60. Z2. C0/G7/G101/G17/"
+    + _AS_RADIUS.format("Y")
+    + "G109/G8/G0 X100. Z50./M35/M130/M30",
+    "mazak-integrex": "O1/G21 G90 G94 G40 G97/T0101/M205/M200/G28 C0/M3 S3000/G0 X60. Z2. C0/G10.9 X0/G17 XC/G12.1/"
+    + _AS_RADIUS.format("C")
+    + "G13.1/G10.9 X1/M5/M202/G0 X100. Z50./M30",
+}
+
+
+@pytest.mark.ci
+@looped(("control", "number"), [(control, number) for control, changes in MEASURES.items() for number in (0, 1)])
+def test_where_x_becomes_a_radius_is_seen_in_the_path(control: str, number: int, tmp_path: Path) -> None:
+    text = other = WITH_RADII[control]
+    for old, new in MEASURES[control][number]:
+        assert old in other, old
+        other = other.replace(old, new)
+    texts = [written_text.replace("/", "\n") + "\n" for written_text in (text, other)]
+    assert report_of(texts[1], control, CUTTER).verdict == "pass"
+    assert compared(tmp_path, control, *texts).exit_code == 0
+    assert certified(tmp_path, control, *texts).exit_code == 0
+
+
+@pytest.mark.ci
+@looped(
+    ("control", "old", "new"),
+    [
+        ("siemens-transmit", "SETMS(2) S2=3000 M2=3/G0 X60 Z2 C0", "G0 X60 Z2 C0/SETMS(2) S2=3000 M2=3"),
+        ("fanuc-30i", "#1=4./G0 X60. Z2. C0", "G0 X60. Z2. C0/#1=4."),
+        ("okuma-osp", "V1=4/G0 X60 Z2", "G0 X60 Z2/V1=4"),
+    ],
+)
+def test_a_statement_at_another_place_is_another_text(control: str, old: str, new: str, tmp_path: Path) -> None:
+    move = next(part for part in old.split("/") if part.startswith("G0"))
+    sound = program(control, (old if control.startswith("siemens") else move, old))
+    result = compared(tmp_path, control, sound, sound.replace(old.replace("/", "\n"), new.replace("/", "\n")))
+    assert "the same but for" not in result.stdout
+
+
+@pytest.mark.ci
+def test_a_word_of_a_language_of_its_own_is_shown_as_it_is_written(tmp_path: Path) -> None:
+    texts = [program("siemens-transmit", ("/G42", f"/OFFN={size} G42")) for size in (0, 0.2)]
+    assert "OFFN=0 has become OFFN=0.2" in compared(tmp_path, "siemens-transmit", *texts).stdout

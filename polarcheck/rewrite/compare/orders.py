@@ -160,11 +160,22 @@ def _words_of_moves(trace: Trace) -> set[str]:
 
 
 def _sets_state(trace: Trace) -> Mask:
-    """Return a mask of the G words whose state is compared elsewhere; G12.1 in the mode sets none."""
+    """
+    Return a mask of the G words whose state is compared elsewhere; G12.1 in the mode sets none.
+
+    Whether X is a radius is seen in the path.
+    """
     words = [word for key in _OF_STATES for word in trace.machine.codes(key)]
     words += [*trace.machine.polar.on, *trace.machine.polar.off]
     sets = code_set([word for word in words if word.startswith("G") and " " not in word])[trace.blocks.g_codes]
+    sets |= np.isin(trace.blocks.g_words, _x_switches(trace))
     return np.asarray(sets & ~trace.mode.enters_again[trace.run.row[trace.blocks.g_words]])
+
+
+def _x_switches(trace: Trace) -> Rows:
+    """Return the words that make X a radius or a diameter: DIAMOF, G7, G10.9 beside X0."""
+    control = trace.machine.control
+    return trace.blocks.code_indices(*control.x_radius_words, *control.x_diameter_words)
 
 
 def _turns_side(trace: Trace) -> Mask:
@@ -204,6 +215,9 @@ class _Reader:
         self._is_left_out = trace.run.words.is_unreadable | _of_calls(trace)
         is_seen = _sets_state(trace) | (trace.mode.enters_again[trace.run.row[trace.blocks.g_words]] & (not with_sides))
         self._is_left_out[trace.blocks.g_words[is_seen]] = True
+        # The X of G10.9 X0.
+        switches = trace.blocks.with_words(_x_switches(trace)) & ~trace.modal.uses_axes
+        self._is_left_out |= switches[trace.run.row] & (trace.run.words.address == ord("X"))
         self._in_force: dict[str, float] = {}
 
     def step(self, row: int) -> Step | None:
@@ -229,10 +243,12 @@ class _Reader:
         """Return token, value and text of a word; None for a word that is compared elsewhere."""
         words, is_special = self._trace.run.words, bool(self._special[row])
         name, value = self._address(int(words.address[index])), float(words.value[index])
-        is_as_written = np.isnan(value) or not name[-1].isalnum()
-        text = executed_word(self._trace.run, index) if is_as_written else f"{name}{value:.10g}"
+        written = executed_word(self._trace.run, index)
+        # A word of a language of its own, as OFFN=, is read as one of a letter.
+        is_as_written = np.isnan(value) or not name[-1].isalnum() or not written.upper().startswith(name)
+        text = written if is_as_written else f"{name}{value:.10g}"
         # Two codes that are not known may be the same.
-        token = f"{name}{value:.10g}" if np.isnan(value) else text
+        token = f"{name}{value:.10g}"
         if self._is_left_out[index]:
             return None
         if name == "M":
@@ -248,13 +264,11 @@ class _Reader:
                 self._in_force[name] = value
             return name, value, text
         if words.address[index] == OF_SPINDLE:
-            written = executed_word(self._trace.run, index)
             return f"{written.partition('=')[0]}=", value, written
         if name in ("N", "O", "/") or (name == "F" and self._trace.modal.in_cycle[row]):
             return None
         if name == "G":
-            written = executed_word(self._trace.run, index)
-            return token, None, text if written[:1].upper() == "G" else written
+            return token, None, text
         # Beside an order without a move R is no radius: `M19 R90.`.
         is_order = is_special or name not in self._of_moves or (name in _OF_ARCS and not self._trace.axes.moves[row])
         return (name, self._length(name, row, value), text) if is_order else None

@@ -36,8 +36,12 @@ def has_same_words(old: Trace, new: Trace) -> bool:
 def _columns(text: Text) -> Iterator[NDArray[np.generic]]:
     words = text.words[text.words.address != ord("N")]
     yield from (words.address, np.nan_to_num(words.value, nan=np.inf), words.has_point, words.fault)
-    # Where blocks begin.
+    # Where blocks begin, and which of those with words or statements have statements.
     yield np.diff(words.block, prepend=-1) != 0
+    is_macro = text.blocks.is_macro
+    is_full = is_macro.copy()
+    is_full[words.block] = True
+    yield is_macro[is_full]
 
 
 def spans_of(text: Text, spans: Blocks | Spans) -> list[bytes]:

@@ -137,6 +137,7 @@ def read_back_on_part(
     left_out: lines of the original that position the tool differently in the new program; the moves after them are
     compared.
     noted: groups of rules whose errors are notes: they are about states of the original that matter only in the mode.
+    Warnings are notes.
     finer: ascending tolerances that are tried first [mm]: the deviation is measured up to the first one that the paths
     keep.
     of_sections: the terms by which sections that are kept are compared, with F outside of them and their state; then
@@ -168,9 +169,8 @@ def read_back_on_part(
         differences.append(Refusal(line, f"{text} (line {new_line} of the result)"))
     differences += changed_orders(original.trace, new.trace, old_path, new_path, tolerance)
     notes: dict[str, str] = {}
-    lowest = Severity.WARNING if of_sections else Severity.ERROR
-    for rule, _, refusal in _added_findings(original, new, origin, lowest):
-        if rule.group in noted:
+    for rule, severity, refusal in _added_findings(original, new, origin, Severity.WARNING):
+        if rule.group in noted or not (of_sections or severity >= Severity.ERROR):
             notes.setdefault(rule.name, f"line {refusal.line}: {refusal.text}")
         else:
             differences.append(refusal)
