@@ -84,9 +84,10 @@ class PlanePath(Table, frozen=True):
 
         An arc whose end is not quite on its circle is a spiral.
         """
-        start, end = self.start[move], self.end[move]
-        point = start + (end - start) * share
-        arcs = np.flatnonzero(self.is_arc[move])
+        arcs, point = self.is_arc[move].nonzero()[0], np.empty(len(move), np.complex128)
+        if len(arcs) < len(move):
+            start = self.start[move]
+            point[:] = start + (self.end[move] - start) * share
         if len(arcs):
             spoke = self.start - self.center
             growth = np.where(spoke == 0, 0, np.abs(self.end - self.center) / np.maximum(np.abs(spoke), ZERO) - 1)
@@ -94,7 +95,9 @@ class PlanePath(Table, frozen=True):
             angle, turn = self.sweep[of] * of_arc, np.empty(len(arcs), np.complex128)
             turn.real, turn.imag = np.cos(angle), np.sin(angle)
             point[arcs] = self.center[of] + spoke[of] * (1 + growth[of] * of_arc) * turn
-        point[share == 0], point[share == 1] = start[share == 0], end[share == 1]
+        for at, ends in enumerate((self.start, self.end)):
+            there = (share == at).nonzero()[0]
+            point[there] = ends[move[there]]
         return point
 
     def turned_by(self, turn: complex | Points) -> Self:

@@ -15,6 +15,7 @@ import shapely  # type: ignore[import-untyped]
 
 from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, Table, first_of_each, ranges
 from polarcheck.foundation.time_limit import keep_time
+from polarcheck.geometry.plane import cross
 from polarcheck.geometry.tolerances import CROSSINGS, FREE_CROSSINGS, TOUCH
 
 #: Pairs of walls to compare for each wall of a group, and beyond that, before it is taken to cross too often.
@@ -114,8 +115,9 @@ class _Runs(msgspec.Struct, frozen=True):
     Walls that go on from each other and bend little, from `first` on, `size` of them.
 
     bend: how far each run bends [rad]; joint: how far it turns away from the one before, which counts for its bend as
-    well; joined: it goes on from that at all. begin, end: complex128 [mm]; along: unit vector between; low, high: how
-    far it lies to the right, below 0, and to the left of the line between [mm].
+    well; joined: it goes on from that at all. begin, end: complex128 [mm]; along: unit vector between; right, left: how
+    far it reaches to either side of the line through the center of C along that, to the left above 0 [mm]; wide: its
+    greatest distance from the line between, and TOUCH [mm].
     """
 
     first: Rows
@@ -126,8 +128,9 @@ class _Runs(msgspec.Struct, frozen=True):
     begin: Points
     end: Points
     along: Points
-    low: Floats
-    high: Floats
+    right: Floats
+    left: Floats
+    wide: Floats
 
 
 def _runs(walls: _Walls) -> _Runs:
@@ -145,16 +148,17 @@ def _runs(walls: _Walls) -> _Runs:
     along = (end - begin) / np.abs(end - begin)
     aside = ((start - np.repeat(begin, size)) * np.repeat(along.conj(), size)).imag
     low, high = np.minimum.reduceat(aside, first), np.maximum.reduceat(aside, first)
-    return _Runs(first, size, np.add.reduceat(bend, first), bend[first], joined[first], begin, end, along, low, high)
+    line, wide = cross(along, begin), np.maximum(high, -low) + TOUCH
+    bend_of_run, sides = np.add.reduceat(bend, first), (line + low, line + high)
+    return _Runs(first, size, bend_of_run, bend[first], joined[first], begin, end, along, *sides, wide)
 
 
 def _apart(runs: _Runs, run: Rows, second: Rows) -> Mask:
     """A boolean per pair: the second run lies wholly to one side of the strip along the line of the first."""
-    begin, across = runs.begin[run], runs.along[run].conj()
-    first, last = (((point[second] - begin) * across).imag for point in (runs.begin, runs.end))
-    wide = np.maximum(runs.high, -runs.low)[second] + TOUCH
+    along, wide = runs.along[run], runs.wide[second]
+    first, last = cross(along, runs.begin[second]), cross(along, runs.end[second])
     return np.asarray(
-        (np.minimum(first, last) - wide > runs.high[run]) | (np.maximum(first, last) + wide < runs.low[run])
+        (np.minimum(first, last) - wide > runs.left[run]) | (np.maximum(first, last) + wide < runs.right[run])
     )
 
 
