@@ -11,12 +11,13 @@ import pytest
 from cases import looped
 from click.testing import CliRunner, Result
 from hexagon_program import CONTROLS, CUTTER, HEX
-from programs import report_of, tables_of
+from programs import ROOT, report_of, tables_of
 
 from polarcheck.commands import main
 from polarcheck.program.execution.listing import Listing
 from polarcheck.reports.made_parts.part_report import in_one_line, made_by
 
+SAMPLES = ROOT / "sample_programs"
 #: A hexagon of 36 mm across its flats with R 4 of offset 1; a / stands for the end of a block.
 PROGRAMS = {
     "fanuc-30i": HEX,
@@ -1042,3 +1043,26 @@ def test_a_statement_at_another_place_is_another_text(control: str, old: str, ne
 def test_a_word_of_a_language_of_its_own_is_shown_as_it_is_written(tmp_path: Path) -> None:
     texts = [program("siemens-transmit", ("/G42", f"/OFFN={size} G42")) for size in (0, 0.2)]
     assert "OFFN=0 has become OFFN=0.2" in compared(tmp_path, "siemens-transmit", *texts).stdout
+
+
+@pytest.mark.ci
+@looped(
+    ("control", "place", "text"),
+    [
+        (
+            "siemens-transmit",
+            "G0 X28 Y0",
+            program("siemens-transmit", ("G0 X60 Z2 C0", "G0 Z2 C0"), ("G1 X28", "G0 X28 Y0")),
+        ),
+        ("haas-lathe", "G0 X28. Y0", program("haas-lathe", ("G0 X60. Z2. C0", "G0 Z2. C0"), ("G1 X28.", "G0 X28. Y0"))),
+        ("fagor-8055t", "G0 X40. C0", (SAMPLES / "fagor-8055t/face.nc").read_text("utf-8")),
+    ],
+)
+def test_a_program_that_positions_behind_the_switch_is_compared(
+    control: str, place: str, text: str, tmp_path: Path
+) -> None:
+    code, x, second = place.split()
+    result = compared(tmp_path, control, text, text.replace(place, f"{code} {second} {x}"))
+    assert (result.exit_code, "the same metal" in result.stdout) == (0, True)
+    elsewhere = compared(tmp_path, control, text, text.replace(place, f"{code} {x[0]}5{x[1:]} {second}"))
+    assert (elsewhere.exit_code, "the path differs" in elsewhere.stdout) == (1, True)

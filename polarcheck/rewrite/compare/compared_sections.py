@@ -119,7 +119,7 @@ def of_sections(trace: Trace, tool_center: ToolCenter, steps: Sequence[Step], te
             low, high = np.searchsorted(plain.section, (number, number + 1)).tolist()
             moves = plain[low:high]
         turned, knows_z = _turned(trace, moves, number)
-        if not turned.is_known.all():
+        if not turned.is_known.all() and not (turned := _from_unknown(trace, turned, moves.row)).is_known.all():
             needs = position_not_known(trace, int(moves.row[np.argmin(turned.is_known)]))
         path = _with_feeds(trace, turned, moves.row, terms, in_section=True)
         if terms.is_rewritten:
@@ -169,6 +169,17 @@ def _turned(trace: Trace, moves: Moves, section: int) -> tuple[SpacePath, bool]:
     if not knows_z:
         z_from = z_to = np.zeros(len(moves))
     return SpacePath(*moves.turned_by(turn).shape, z_from, z_to), knows_z
+
+
+def _from_unknown(trace: Trace, path: SpacePath, row: Rows) -> SpacePath:
+    """Let rapid traverse at the beginning of a section begin at its first known point, as where it leads outside."""
+    first = int(np.argmin(np.append(trace.axes.motion[row] == Motion.RAPID, False)))
+    start, end, z_start, z_end = path.start.copy(), path.end.copy(), path.z_start.copy(), path.z_end.copy()
+    of_lead = slice(0, first + 1)
+    for begins, ends in ((start.real, end.real), (start.imag, end.imag), (z_start, z_end)):
+        if not np.isnan(begins[first] if first < len(path) else ends[-1]):
+            begins[of_lead], ends[of_lead] = _without_unknown(begins[of_lead], ends[of_lead])
+    return msgspec.structs.replace(path, start=start, end=end, z_start=z_start, z_end=z_end)
 
 
 def outside(trace: Trace, steps: Sequence[Step], rows: Rows, terms: Terms) -> Stretch:
