@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -1066,3 +1067,17 @@ def test_a_program_that_positions_behind_the_switch_is_compared(
     assert (result.exit_code, "the same metal" in result.stdout) == (0, True)
     elsewhere = compared(tmp_path, control, text, text.replace(place, f"{code} {x[0]}5{x[1:]} {second}"))
     assert (elsewhere.exit_code, "the path differs" in elsewhere.stdout) == (1, True)
+
+
+@pytest.mark.ci
+@looped("control", C_OF_ENTRY)
+def test_a_place_is_not_known_to_the_line_where_c_is_not(control: str) -> None:
+    second = "Y" if control == "haas-lathe" else "C"
+    slot = f"X20. {second}-8. F150\n{second}8.\n{second}-8.\nX28. {second}0"
+    texts = [program(control, *changes) for changes in ((), C_OF_ENTRY[control])]
+    lines = [
+        in_one_line(tables_of(re.sub(r"G42.*?G40 X\S+", slot, text, flags=re.DOTALL), control, CUTTER))
+        for text in texts
+    ]
+    assert ["is not known" in line for line in lines] == [False, True]
+    assert all("c from" in line for line in lines)

@@ -55,16 +55,17 @@ def shape_in_words(shape: Shape, line_of: Callable[[int], int], sizes: Sizes, ho
     told += _corners(value, sizes)
     if shape.name != "circle" and "turned" in value and (how.from_c0 or not how.short):
         told += _turned(shape)
-    told += _off_axis(value, shape, sizes, how.short)
+    places = _off_axis(value, shape, sizes, how.short)
     if (
         shape.name in ("contour", "polygon", "groove")
         or "regular_by_x" in value
         or ("x_least" in value and not shape.is_regular)
     ):
-        told += _extents(value, sizes, how.short)
+        places += _extents(value, sizes, how.short)
+    told += places
     if shape.is_open and shape.name == "contour":
         told.append("open: beyond its ends the part is not known")
-    if not (how.from_c0 or how.short) and _has_direction(shape):
+    if not how.from_c0 and (places if how.short else _has_direction(shape)):
         from_c = f"from C at {how.switch}, which is not known"
         is_turned = bool(value.get("turned")) and told[-1].startswith("turned")
         told = [*told[:-1], f"{told[-1]} {from_c}"] if is_turned else [*told, f"C at {how.switch} is not known"]
