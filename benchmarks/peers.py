@@ -3,6 +3,7 @@ polarcheck beside other readers of NC programs: time and memory of whole process
 
     python benchmarks/peers.py --rs274 FILE --python FILE --nctab FILE --ncplot7py FOLDER -o docs/benchmarks.md
         [--rounds NUMBER] [--before FILE] [--note WORDS]
+    python benchmarks/peers.py --only "Small files" [--before FILE]
 
 A peer is found by its option, by RS274, PEERS_PYTHON, NCTAB or NCPLOT7PY in the environment, or on the search path; one
 that is not there is left out, which the page says. All are run in turn, round by round, so that they see the same
@@ -209,17 +210,21 @@ def small(asked: argparse.Namespace, folder: Path) -> str:
         commands |= {name + BEFORE: [*older, *files] for name, files in inputs_of.items()}
     taken = measured(commands, 2 * asked.rounds)
     base, one = taken["`import click, numpy`"], taken["polarcheck, a program of 500 blocks"]
-    rows = [
-        [name, f"{found.clock * 1000:.0f}", *(f"{ratio(found.clocks, other.clocks):.2f}" for other in (base, one))]
-        for name, found in taken.items()
-    ]
+    rows = []
+    for name, found in taken.items():
+        ratios = [ratio(found.clocks, other.clocks) for other in (base, one)]
+        ratios += [ratio(found.cpus, taken[name + BEFORE].cpus)] if name + BEFORE in taken else []
+        rows.append([name, f"{found.clock * 1000:.0f}", *(f"{number:.2f}" for number in ratios)])
+        rows[-1] += ["-"] * (len(ratios) < 3)
     # The server looks for programs in its folder, where those of all other rows would lie.
     with tempfile.TemporaryDirectory() as alone:
         key = editor.measured(_KEY_BLOCKS, 4 * asked.rounds, Path(alone).resolve())[editor.AFTER_A_KEY]
     clock = statistics.median(key)
     to_both = (f"{clock / 1000 / other.clock:.2f}" for other in (base, one))
-    rows.append([f"{editor.AFTER_A_KEY}, a program of {_KEY_BLOCKS} blocks in an editor", f"{clock:.0f}", *to_both])
-    return table(["command", "clock ms", "to the import", "to one program"], rows)
+    rows.append(
+        [f"{editor.AFTER_A_KEY}, a program of {_KEY_BLOCKS} blocks in an editor", f"{clock:.0f}", *to_both, "-"]
+    )
+    return table(["command", "clock ms", "to the import", "to one program", "CPU to before"], rows)
 
 
 def samples(folder: Path, program: str) -> list[str]:
@@ -454,7 +459,7 @@ The program is that of `benchmarks/generate.py`: turning, then polar sections wi
 Readers of mill programs have the same path in X and Y (`benchmarks/xy_twin.py`), block for block; rs274 with G41/G42 is
 what polarcheck with a cutter is put beside. A reader that takes longer than {SLOW} s runs {SLOW_ROUNDS} times at most.
 Of one that needs less memory than what starts it, the peak is that of what starts it.{left_out}""",
-        "Small files": "On the clock, since that is what somebody waits for at a commit.",
+        "Small files": "On the clock, since that is what somebody waits for at a commit. The sample has 23 blocks.",
         "Many files": f"{_MANY} programs of {_BLOCKS_OF_MANY:,} blocks, in one process and in two (`--jobs`).",
         "Other commands": f"""\
 The program of `benchmarks/generate.py` with {min(_BLOCKS_OF_COMMANDS, asked.blocks):,} blocks and a cutter of R 2.""",
@@ -486,6 +491,7 @@ Made by one command:
 on {machine}; medians of {asked.rounds} rounds, in each of which every command runs once;
 ratios are medians of those of each round.
 What they write goes to /dev/null, and polarcheck keeps no results of earlier runs.
+`--only "Small files" --before FILE` prints one part, beside the polarcheck of another Python, instead of the page.
 {older}{beside}
 {asked.note}
 
@@ -524,19 +530,27 @@ def main() -> None:
     parser.add_argument("--blocks", type=int, default=200_000)
     parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("--quick", action="store_true", help="nothing larger than --blocks")
-    parser.add_argument("-o", "--output", type=Path, required=True)
+    parser.add_argument("--only", choices=PARTS, metavar="TITLE", help="one part of the page, on standard output")
+    parser.add_argument("-o", "--output", type=Path)
     asked = parser.parse_args()
+    if not (asked.output or asked.only):
+        parser.error("either --output or --only is needed")
     for command in (CHECK, *([by_older(asked.before, CHECK)] if asked.before else [])):
         run([*command, str(ROOT / "sample_programs" / "hexagon.nc")])  # compiles what is not yet
     with tempfile.TemporaryDirectory() as made:
         folder = Path(made)
         parts = {}
         for title, measure in PARTS.items():
+            if asked.only not in (None, title):
+                continue
             print(f"{title} ...", end=" ", file=sys.stderr, flush=True)
             began = time.perf_counter()
             parts[title] = measure(asked, folder)
             print(f"{time.perf_counter() - began:.0f} s", file=sys.stderr)
-    asked.output.write_text(page(asked, parts), "utf-8")
+    if asked.only:
+        print(parts[asked.only], end="")
+    else:
+        asked.output.write_text(page(asked, parts), "utf-8")
 
 
 if __name__ == "__main__":

@@ -126,6 +126,13 @@ def test_the_page_is_written_without_any_peer(tmp_path: Path, monkeypatch: pytes
     assert len(re.findall(r"^\| total \|", text, re.MULTILINE)) == 3
 
 
+def test_one_part_of_the_page_is_printed(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.setitem(peers.PARTS, "Long lines", lambda asked, folder: f"{asked.rounds} rounds\n")
+    monkeypatch.setattr(sys, "argv", ["peers", "--only", "Long lines", "--rounds", "5"])
+    peers.main()
+    assert capsys.readouterr().out == "5 rounds\n"
+
+
 @pytest.mark.nightly
 @pytest.mark.skipif(shutil.which("rs274") is None, reason="there is no LinuxCNC here")
 def test_inside_corners_and_arcs_of_random_contours_are_those_of_linuxcnc(monkeypatch: pytest.MonkeyPatch) -> None:
