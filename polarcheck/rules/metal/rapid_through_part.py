@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     follows={
         "block": ("rapid-plunge-into-stock",),
         "tool call": ("cut-in-air",),
-        "program": ("polar-switched-in-offset-mode", "polar-never-entered"),
+        "program": ("polar-never-entered",),
     },
     is_symptom=True,
 )

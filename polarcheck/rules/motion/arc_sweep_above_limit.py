@@ -22,7 +22,6 @@ LAST_DIGIT = 0.1
     gouges=True,
     at=("X", "U", "C", "H", "I", "J", "R"),
     subject="move",
-    follows={"block": ("arc-sense-reversed",)},
     only_with=(ARC,),
 )
 def arc_sweep_above_limit(arcs: Arcs, machine: Machine) -> Hits:
