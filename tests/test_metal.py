@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import pytest
+import shapely  # type: ignore[import-untyped]
 from cases import looped
 from programs import report_of
+
+from polarcheck.geometry.polygons import areas
 
 HEAD = "G21 G98 G40/T0101/G28 H0/G97 S3000 M13/G0 X60. Z2. C0/G12.1/G1 X60. F1500/Z-5."
 HEXAGON = "C8.66/X0 C17.321/X-30. C8.66/C-8.66/X0 C-17.321/X30. C-8.66/C0"
@@ -62,6 +67,22 @@ CENTER = "G0 X0 Z2. C0/G12.1/G1 X0 F500/Z-4. F40/G41 X8. F80/G3 I-4./G1 G40 X0/Z
 
 
 @pytest.mark.ci
+def test_walls_are_widened_one_by_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    """GEOS takes a thousand times as long for all chords of an arc in one go, where their parallels all but meet."""
+    together: list[bool] = []
+
+    def buffer(geometry: Any, *arguments: Any, **how: Any) -> Any:
+        together.append(bool((shapely.get_type_id(geometry) == shapely.GeometryType.MULTILINESTRING).any()))
+        return plain_buffer(geometry, *arguments, **how)
+
+    plain_buffer = areas.buffer
+    monkeypatch.setattr(areas, "buffer", buffer)
+    program = f"G21 G98 G40/T0101/G97 S3000 M13/{HOLE}/G13.1/G0 C120./Z50./X100./M30"
+    assert found(program, 2.5) == {"rapid-through-part": "error"}
+    assert together
+    assert not any(together)
+
+
 def test_a_part_is_gone_through_far_from_its_center_too() -> None:
     """A hole on the center is milled before the one that the cutter stays in."""
     program = f"{START}/{CENTER}/{HOLE}/{{retract}}G13.1/G0 C120./Z50./X100./M30"

@@ -401,7 +401,7 @@ class Workpiece(Columns, frozen=True):
         if not len(rapids):
             return Hits.none()
         self._bound(rapids)
-        from polarcheck.geometry.polygons.standing_metal import hits_on_part, lines_along, turned
+        from polarcheck.geometry.polygons.standing_metal import hits_on_part, turned, within
 
         moves = self._inside
         moves = moves[~moves.is_rapid]
@@ -415,8 +415,8 @@ class Workpiece(Columns, frozen=True):
             sweeps, taken = self._sweeps(rapids[rows]), self._sweeps(cleared)
             for level, top in self._levels:
                 angle = float(np.radians(self.trace.path.section_entry[level.section]))
-                part, walls = turned(level.polygon, angle), turned(lines_along(level.walls), angle)
-                more, where = hits_on_part(sweeps, part, walls, level.radius, top, level.z, taken)
+                solid = turned(within(level.walls, 2 * level.radius, level.polygon), angle)
+                more, where = hits_on_part(sweeps, solid, top, level.z, taken)
                 new = rows[more & ~hit[rows]]
                 point[new] = where[more & ~hit[rows]]
                 hit[new] = True

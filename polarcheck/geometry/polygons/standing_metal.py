@@ -162,18 +162,14 @@ def _is_at_hole(sweep: Sweeps, holes: Points) -> bool:
     return bool(near.any())
 
 
-def hits_on_part(
-    sweeps: Sweeps, part: Any, walls: Any, cutter: float, top: float, level: float, cleared: Sweeps
-) -> tuple[Mask, Points]:
+def hits_on_part(sweeps: Sweeps, solid: Any, top: float, level: float, cleared: Sweeps) -> tuple[Mask, Points]:
     """
-    A mask of the sweeps that lead through a part that must stand, within 2 R of its walls, and where.
+    A mask of the sweeps that lead through a part that must stand, and where.
 
-    part: the area that stands; walls: its programmed walls, as lines. cutter: R of the cutter that mills them [mm].
-    top, level: the heights between which it stands for certain [mm]. cleared: all moves of the program that cut: what
-    they take off is no part.
+    solid: the area that stands. top, level: the heights between which it stands for certain [mm]. cleared: all moves of
+    the program that cut: what they take off is no part.
     """
     hit, point = np.zeros(len(sweeps), bool), np.full(len(sweeps), np.nan + 0j)
-    solid = areas.intersection(part, areas.buffer(walls, 2 * cutter, quad_segs=8))
     removed = Removed(cleared)
     last = int(cleared.curves.row[-1]) + 1 if len(cleared) else 0
     for number in range(len(sweeps)):
@@ -188,8 +184,7 @@ def hits_on_part(
     return hit, point
 
 
-def lines_along(curves: Curves) -> Any:
-    """The walls as one set of lines."""
-    chords = segments(as_one_loop(curves), _TOLERANCE)
-    ends = np.stack([coordinates(chords.start), coordinates(chords.end)], axis=1)
-    return shapely.multilinestrings(shapely.linestrings(ends))
+def within(walls: Curves, distance: float, part: Any) -> Any:
+    """The area of a part that lies within a distance of its walls [mm]."""
+    path = as_one_loop(walls)
+    return areas.intersection(part, widened(path, segments(path, _TOLERANCE), distance, _TOLERANCE))
