@@ -955,6 +955,38 @@ def test_a_corner_that_another_control_rounds_otherwise_is_one_reason(source: st
     assert all(line for line, _ in reasons)
 
 
+@pytest.mark.ci
+@looped("target", ["fanuc-30i", "okuma-osp", "haas-lathe"])
+def test_statements_that_change_speeds_alone_are_to_be_decided(target: str) -> None:
+    """LIMS= stands in nearly every program of a Siemens; without it the path is the same."""
+    program = SIEMENS + "LIMS=3000\nADIS=0.5\nDIAMOF\nTRANSMIT\nG17\nG1 X20 Y5 F200 OFFN=0\nX30 Y0\nTRAFOOF\nM30\n"
+    text = convert(program, "siemens-transmit", target).data.decode()
+    assert "(DECIDE: LIMS=3000: A STATEMENT THAT" in text
+    assert "(DECIDE: ADIS=0.5: A STATEMENT THAT" in text
+    assert "(DECIDE: OFFN=0: NOTHING SAYS" in text
+
+
+@pytest.mark.ci
+@looped(
+    ("target", "is_taken"),
+    [("citizen", False), ("siemens-transmit", False), ("fagor-8055t", False), ("haas-lathe", True)],
+)
+def test_h_beside_g43_goes_with_it(target: str, is_taken: bool) -> None:
+    """Alone it is a distance of C."""
+    program = "G21 G90 G94 G40\nG43 H12\nG0 X60. Z5. C0.\nG17 XC\nG12.1\nG1 X40. C0. F220.\nC9.\nX60.\nG13.1\nM30\n"
+    text = convert(program, "mazak-integrex", target, "1:radius=4").data.decode()
+    assert ("\nG43 H12\n" in text) == is_taken
+    assert ("DECIDE: G43" in text and "H12: " in text) != is_taken
+
+
+@pytest.mark.ci
+@looped("target", ["fanuc-30i", "haas-lathe", "okuma-osp"])
+def test_a_number_without_a_point_in_a_block_to_be_decided_is_no_reason(target: str) -> None:
+    block = "G68.5 X0 Y0 Z0 I0 J1 K0 R0"
+    program = f"G21 G90 G94 G40\n{block}\nG69.5\nG0 X60. Z5. C0.\nG17 XC\nG12.1\nG1 X40. C0. F220.\nX60.\nG13.1\nM30\n"
+    assert f"(DECIDE: {block}: G68.5" in convert(program, "mazak-integrex", target).data.decode()
+
+
 # ---- values in doubt ----
 
 MILLED_AT_30 = "%\nO1\nG21 G98 G40\nT0101\nG0 X60. Z2. C30.\nG12.1\nG1 X36. C10. F150\nX60. C0\nG13.1\nM30\n%\n"

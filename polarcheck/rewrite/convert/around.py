@@ -27,7 +27,7 @@ _INDEX = re.compile(r"\[[^\[\]]*+\]")
 
 def is_without_effect(content: str, machine: Machine) -> bool:
     """
-    The statement moves nothing and changes no path: a message, a limit of the speed, the wait for another channel.
+    The statement moves nothing and changes no path: a message, a limit of the speed, how corners are run, a wait.
 
     content: of its block, without N word and comment.
     """
@@ -38,7 +38,7 @@ def is_without_effect(content: str, machine: Machine) -> bool:
     plain = _INDEX.sub("[*]", words[0])
     numbered = re.sub(r"(?<=[A-Z])\d+=", "n=", plain)
     for name, effect in machine.macro.statements.items():
-        if effect == "none" and (fnmatchcase(plain, name) or numbered == name):
+        if effect in ("none", "speeds") and (fnmatchcase(plain, name) or numbered == name):
             return True
     return False
 

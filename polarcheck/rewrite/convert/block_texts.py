@@ -9,6 +9,7 @@ import numpy as np
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import stretch
 from polarcheck.program.execution.run import begins_program
+from polarcheck.program.reading.words import Text
 from polarcheck.rules.editing import line_end
 
 _LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz"
@@ -72,17 +73,12 @@ class BlockTexts:
         run = self.trace.run
         low, high = stretch(run.row, row, row + 1)
         spans = [
-            (self._with_name(block, int(run.words.start[index])), int(run.words.end[index]))
+            (with_name(self.text, block, int(run.words.start[index])), int(run.words.end[index]))
             for index in range(low, high)
         ]
         labels = range(*stretch(self.text.labels.block, block, block + 1))
         spans += [(int(self.text.labels.start[index]), int(self.text.labels.end[index])) for index in labels]
         return _behind_head(self.text.without_comments(block, spans))
-
-    def _with_name(self, block: int, start: int) -> int:
-        """Where a word begins, with the letters of its address, of which CR=5 has the last alone."""
-        before = self.text.source.excerpt(int(self.text.blocks.start[block]), start)
-        return start - len(before) + len(before.rstrip(_LETTERS)) if before[-1:].isalpha() else start
 
     # ---- head and end ----
 
@@ -105,6 +101,12 @@ class BlockTexts:
     def marks(self) -> list[int]:
         """The blocks with % at the head or end of a file, or with the name of a program in the form of a control."""
         return sorted(self._marks | {block for block in self._named if block not in self._words})
+
+
+def with_name(text: Text, block: int, start: int) -> int:
+    """Where a word begins, with the letters of its name, of which CR=5 has the last alone, and OFFN=0 none."""
+    before = text.source.excerpt(int(text.blocks.start[block]), start)
+    return start - len(before) + len(before.rstrip(_LETTERS)) if before[-1:].isalpha() else start
 
 
 def _behind_head(content: str) -> str:

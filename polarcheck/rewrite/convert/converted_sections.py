@@ -73,7 +73,7 @@ class _Writer:
 
     def write(self) -> None:
         """Write the blocks of all sections."""
-        reasons, new = refusals(self.original, self.is_same), self.new
+        reasons, new = refusals(self.original, self.is_same, self.translation.why_not), self.new
         sections = self.trace.mode.sections
         for enter, leave in zip(sections.enter.tolist(), sections.leave.tolist(), strict=True) if not reasons else ():
             try:

@@ -13,6 +13,7 @@ from polarcheck.foundation.states import Distance, Units
 from polarcheck.program.machines.axis_table import INCREMENTS
 from polarcheck.program.machines.code_tables import code_numbers
 from polarcheck.program.machines.machine import Machine
+from polarcheck.rewrite.convert.block_texts import with_name
 from polarcheck.rewrite.convert.doubtful_values import Basis
 from polarcheck.rewrite.convert.number_text import number_of, rescaled, rounded
 from polarcheck.rewrite.writing.outcome import refused_at
@@ -215,6 +216,12 @@ class Measures:
     def written(self, index: int) -> str:
         """An executed word as it is written, without blanks."""
         return "".join(self.trace.text.source.excerpt(*self.span(index)).split())
+
+    def named(self, index: int) -> str:
+        """The same with all letters of its name."""
+        (start, end), run = self.span(index), self.trace.run
+        block = int(run.block[int(run.row[index])])
+        return "".join(self.trace.text.source.excerpt(with_name(self.trace.text, block, start), end).split())
 
 
 def fraction(value: float) -> Fraction:

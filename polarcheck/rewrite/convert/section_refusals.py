@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 
@@ -62,18 +63,19 @@ class SectionFeeds:
         return None if math.isnan(feed) else feed
 
 
-def refusals(original: Original, is_same: bool) -> list[Refusal]:
+def refusals(original: Original, is_same: bool, why_not: Callable[[int], str]) -> list[Refusal]:
     """
     Return the reasons, each once a section, in the order of lines.
 
-    is_same: the words of sections stay as they are, so that it does not matter what they come to.
+    is_same: the words of sections stay as they are, so that it does not matter what they come to. why_not: of a row,
+    why it becomes a comment as it is; empty for others.
     """
     trace = original.trace
     again = (trace.mode.enters_again, AGAIN)
     checks = [again] if is_same else [*checks_of_sections(trace, trace.mode.is_followed), *_of_rows(trace)]
     reasons = [*refusals_of_ends(trace), *refusals_in_sections(trace, checks)]
     if not is_same:
-        reasons += [reason for _, reason in original.unpointed]
+        reasons += [reason for row, reason in original.unpointed if not why_not(row)]
     return sorted(dict.fromkeys(reasons), key=lambda reason: reason.line)
 
 

@@ -204,11 +204,15 @@ class Translation:
             # A word of the control's own language, as SETMS(2), on a control of the same language.
             result.words.append(written)
         elif letter == "H" and bool(self.trace.blocks.switches_length_offset[row]):
-            result.words.append(written)
+            # Alone it might turn C there.
+            takes = bool(self.target.codes("tool_length_offset"))
+            alone = f"{written}: {self.target.title} has no code for a length offset"
+            (result.words if takes else result.decisions).append(written if takes else alone)
         elif self._codes.is_beside_m(row, letter):
             result.changed = True
         else:
-            self._undecided(row, f"{written}: nothing says what it is on {self.target.title}", result)
+            named = self.measures.named(index)
+            self._undecided(row, f"{named}: nothing says what it is on {self.target.title}", result)
 
     def _undecided(self, row: int, text: str, result: Translated) -> None:
         """A word without a counterpart goes alone beside a move, or beside codes; elsewhere its block goes with it."""
