@@ -987,6 +987,32 @@ def test_a_number_without_a_point_in_a_block_to_be_decided_is_no_reason(target: 
     assert f"(DECIDE: {block}: G68.5" in convert(program, "mazak-integrex", target).data.decode()
 
 
+@pytest.mark.ci
+@looped(
+    ("target", "expected"),
+    [
+        ("fanuc-30i", "C8.\nG3 X36. C10. I-2. J0\nG1 X-40.\nC-9.293\nX-38.586 C-10.\nX38.\nX40. C-9.\nC0"),
+        ("haas-lathe", "Y8\nG3 X18 Y10 I-2 J0\nG1 X-20\nY-9.293\nX-19.293 Y-10\nX19\nX20 Y-9\nY0"),
+        ("okuma-osp", "Y8\nG103 X18 Y10 L2\nG101 X-20\nY-9.293\nX-19.293 Y-10\nX19\nX20 Y-9\nY0"),
+    ],
+)
+def test_corners_that_a_siemens_makes_are_lines_and_arcs(target: str, expected: str) -> None:
+    """RND=2 is an arc of 2 mm, CHF=1 a line of 1 mm, CHR=1 takes 1 mm off both sides."""
+    blocks = "G1 X20 Y0 F200\nY10 RND=2\nX-20\nY-10 CHF=1\nX20 CHR=1\nY0\nX28"
+    program = SIEMENS + f"DIAMOF\nTRANSMIT\nG17\n{blocks}\nTRAFOOF\nDIAMON\nM30\n"
+    outcome = convert(program, "siemens-transmit", target, "1/1:radius=3")
+    assert expected in outcome.data.decode()
+    assert not any("RND" in decision.text for decision in outcome.decisions)
+    too_large = program.replace("RND=2", "RND=30")
+    assert "RND=30 is not simulated: it is too large" in str(
+        refused(too_large, "siemens-transmit", target, "1/1:radius=3")
+    )
+    blocks = "G1 G42 X20 Y0 F200\nY10 RNDM=2\nX-20\nY-10\nX20\nY0 RNDM=0\nG40 X28"
+    program = SIEMENS + f"DIAMOF\nTRANSMIT\nG17\n{blocks}\nTRAFOOF\nDIAMON\nM30\n"
+    text = convert(program, "siemens-transmit", target, "1/1:radius=3").data.decode()
+    assert len(re.findall(r"(?:^|G3 |G103 ).* (?:I-?[02]\.? J-?[02]\.?|L2)$", text, re.MULTILINE)) == 4
+
+
 # ---- values in doubt ----
 
 MILLED_AT_30 = "%\nO1\nG21 G98 G40\nT0101\nG0 X60. Z2. C30.\nG12.1\nG1 X36. C10. F150\nX60. C0\nG13.1\nM30\n%\n"

@@ -63,7 +63,7 @@ def with_made_corners(trace: Trace) -> Run:
     rows, following = rows[is_corner], following[is_corner]
     chosen, corners, of_geometry = _made(trace, rows, following, sizes)
     reasons |= of_geometry
-    run = msgspec.structs.replace(trace.run, remarks=(*trace.run.remarks, *_remarks(trace, reasons)))
+    run = msgspec.structs.replace(trace.run, remarks=(*trace.run.remarks, *_remarks(trace, reasons, sizes.is_modal)))
     if not chosen.any():
         return run
     return msgspec.structs.replace(
@@ -150,11 +150,17 @@ def _columns(trace: Trace, rows: Rows, following: Rows, corners: PlanePath) -> M
     )
 
 
-def _remarks(trace: Trace, reasons: dict[int, str]) -> Iterator[Remark]:
-    addresses = list(trace.machine.arcs.made_corners)
-    words = np.sort(trace.blocks.word_indices(*addresses))
+def _remarks(trace: Trace, reasons: dict[int, str], is_modal: Mask) -> Iterator[Remark]:
+    kinds = trace.machine.arcs.made_corners
+    of_row, modal = (
+        np.sort(
+            trace.blocks.word_indices(*(word for word, kind in kinds.items() if (kind == "modal-radius") == of_modal))
+        )
+        for of_modal in (False, True)
+    )
     said = set[tuple[int, str]]()
     for row in sorted(reasons):
+        words = modal if is_modal[row] else of_row
         index = int(words[np.searchsorted(trace.run.row[words], row, "right") - 1])
         word, block = trace.run.written(index), int(trace.run.block[row])
         if (block, word) not in said:

@@ -106,7 +106,7 @@ class _Writer:
             pen.numbers.line = self.lines[row]
             if self.blocks[row] in targets:
                 pen.forget()
-            self._put(row, self._row(row, enter, leave, pen, turn))
+            self._put(row, [*self._row(row, enter, leave, pen, turn), *self._corner(row + 1, pen, turn)])
         block = self.blocks[leave]
         self.new.blocks[block] = [*self.new.blocks[block], *ends.feed_behind(leave, pen)]
 
@@ -151,6 +151,14 @@ class _Writer:
         if not moves:
             return _without_empty(NewBlock((*codes, *back), comment))
         return [*moves[:-1], NewBlock((*moves[-1].words, *back), comment)]
+
+    def _corner(self, row: int, pen: Pen, turn: complex) -> list[NewBlock]:
+        """The line or arc of a corner that the control makes behind a block, as by RND=2; nothing for another row."""
+        if row >= len(self.trace) or not self.trace.axes.makes_corner[row]:
+            return []
+        if self.computed.is_computed(row - 1) or self.computed.is_computed(row + 1):
+            raise refused_at(self.trace, row, "its words are computed, and the control makes a corner beside it")
+        return self._moves(row, pen, turn, ())
 
     def _comment(self, row: int, translated: Translated) -> str:
         """

@@ -39,6 +39,7 @@ class SectionWords:
         polar, arcs = source.polar, source.arcs
         centers = [word for pair in polar.center_words.values() for word in pair]
         addresses = {"X", "U", "Z", "W", "F", "I", "J", "K", arcs.radius_word, *polar.axis_addresses, *centers}
+        addresses |= {*arcs.made_corners}
         addresses |= {arcs.larger_arc_word[:1]} if arcs.larger_arc_word else set()
         self._addresses = {source.address_number(address) for address in addresses if address}
         letters = {*polar.words_beside_switch, polar.direction_word}
