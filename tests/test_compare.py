@@ -312,6 +312,19 @@ def test_m3_may_start_the_live_tool_where_no_code_is_named_for_it(other: str, st
     assert "spindle" not in text(result), text(result)
 
 
+@pytest.mark.ci
+def test_a_corner_that_the_control_makes_is_the_arc_that_it_stands_for() -> None:
+    """RND=2 shows in the path, and is no order; outside of the mode, where none is made, it is one."""
+    head = "G90 DIAMON G18 G71 G94\nT1 D1\nG0 X60 Z2 C0\nG1 Z-1 F100\nX60.5\nDIAMOF\nTRANSMIT\nG17\n"
+    made = f"{head}G1 X20 Y0 F200\nY10 RND=2\nX-20\nY-10 CHF=1\nX20\nY0\nX28\nTRAFOOF\nDIAMON\nM30\n"
+    by_hand = made.replace("Y10 RND=2\n", "Y8\nG3 X18 Y10 CR=2\nG1 ").replace("Y-10 CHF=1", "Y-9.2929\nX-19.2929 Y-10")
+    revisions = [revision(text, "siemens-transmit", ()) for text in (made, by_hand, made.replace("RND=2", "RND=3"))]
+    assert comparison(revisions[0], revisions[1]).verdict == SAME_METAL
+    assert kinds(comparison(revisions[0], revisions[2])) == {"path"}
+    outside = revision(made.replace("G1 Z-1 F100", "G1 Z-1 F100 RND=1"), "siemens-transmit", ())
+    assert comparison(revisions[0], outside).verdict != SAME_METAL
+
+
 # ---- what is not known ----
 
 

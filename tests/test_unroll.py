@@ -6,6 +6,7 @@ What the tool does in the written blocks is worked out by written_moves, which s
 
 from __future__ import annotations
 
+import cmath
 import json
 import math
 import re
@@ -494,3 +495,25 @@ def _beyond(line: tuple[complex, complex], block: Block) -> float:
     offset = (block.points() - line[0]) * np.conj(way) / abs(way)
     along = np.maximum(np.maximum(-offset.real, offset.real - abs(way)), 0)
     return float(np.hypot(along, offset.imag).max())
+
+
+@pytest.mark.ci
+@looped("side", ["", "G42 "])
+def test_corners_that_the_control_makes_are_run_along(side: str) -> None:
+    """RND=2 and CHF=1 of a Siemens: the tool keeps R off the arc about X18 Y8, and off the chamfer."""
+    blocks = f"G1 {side}X20 Y0 F200\nY10 RND=2\nX-20\nY-10 CHF=1\nX20\nY0\nG40 X28"
+    head = "G90 DIAMON G71 G94\nT1 D1\nG0 X60 Z2 C0\nDIAMOF\nTRANSMIT\nG17\n"
+    program = f"{head}{blocks}\nTRAFOOF\nDIAMON\nM30\n"
+    text, _ = unrolled(program, "--machine", "siemens-transmit", "--feed", "per-minute", "--tool", "1/1:radius=3")
+    moves = re.findall(r"^(?:G1 )?(?:X([\d.]+) ?)?(?:C([-\d.]+))?", text, re.MULTILINE)
+    x, c, points = 30.0, 0.0, []
+    for words in moves:
+        x, c = (float(word) if word else value for word, value in zip(words, (x, c), strict=True))
+        points.append(cmath.rect(x, math.radians(-c)))
+    offset = 3.0 if side else 0.0
+    along = [abs(point - (18 + 8j)) for point in points if point.real > 18.01 and point.imag > 8.01]
+    assert len(along) > 5
+    assert max(abs(distance - 2 - offset) for distance in along) < 0.006
+    chamfer = [abs((point + 20 + 9.2929j).real + (point + 20 + 9.2929j).imag) / math.sqrt(2) for point in points]
+    assert sum(abs(distance - offset) < 0.006 for distance in chamfer) >= 2
+    assert "RND" not in text

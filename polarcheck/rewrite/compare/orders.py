@@ -213,6 +213,9 @@ class _Reader:
         self._dwell = np.where(dwells(trace), 1000 * time_of_dwells(trace), np.nan)
         self._turns_side = _turns_side(trace) & with_sides
         self._is_left_out = trace.run.words.is_unreadable | _of_calls(trace)
+        # Corners that the control makes in the mode show in the path.
+        corners = trace.blocks.word_indices(*trace.machine.arcs.made_corners)
+        self._is_left_out[corners[trace.mode.in_polar[trace.run.row[corners]]]] = True
         is_seen = _sets_state(trace) | (trace.mode.enters_again[trace.run.row[trace.blocks.g_words]] & (not with_sides))
         self._is_left_out[trace.blocks.g_words[is_seen]] = True
         # The X of G10.9 X0.

@@ -33,7 +33,7 @@ class RemainingWords:
         of_codes = trace.blocks.words_at(trace.blocks.code_indices(*codes, *polar.on, *polar.off))
         centers = [word for pair in polar.center_words.values() for word in pair]
         addresses = {*polar.axis_addresses, "X", "U", "Z", "W", *centers, machine.arcs.radius_word, "F"}
-        addresses |= {machine.arcs.larger_arc_word, machine.offsets.allowance_word}
+        addresses |= {machine.arcs.larger_arc_word, machine.offsets.allowance_word, *machine.arcs.made_corners}
         numbers = [machine.address_number(address) for address in addresses if address]
         self._is_dropped = of_codes | np.isin(trace.run.words.address, numbers)
         self._switches = trace.mode.enters | trace.mode.leaves
