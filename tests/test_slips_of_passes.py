@@ -8,6 +8,8 @@ from collections.abc import Callable
 import pytest
 from programs import report_of
 
+from polarcheck.foundation.finding import Finding
+
 DOUBLE_D = ["G1 G42 X21.", "C10.712", "G3 X-21. C10.712 R15.", "G1 C-10.712", "G3 X21. C-10.712 R15.", "G1 C0"]
 CANCEL = "G1 G40 X50. F1500"
 HEAD = ["G21 G98 G40", "T0808", "G0 X60. C0 Z2.", "G12.1", "G1 C30. F1500", "X50.", "C0"]
@@ -97,3 +99,62 @@ def test_arcs_longer_than_is_usual_in_all_passes_are_no_cause_of_one_that_differ
     odd_one = [boss[0], "G3 X-30. C3. I-15. J1.5", *boss[2:]]
     found = said(form(passes(*(odd_one if number == odd else boss for number in range(2)))), "takisawa")
     assert "arc-sweep-above-limit" not in {rule for _, rule in found}
+
+
+LED = [
+    "G1 X60. C-7. F1500",
+    "G42 X35. F120",
+    "G2 X21. C0 R7.",
+    *("G1 C10.712", *DOUBLE_D[2:]),
+    "G2 X35. C7. R7.",
+    "G1 G40 X60.",
+]
+
+
+@pytest.mark.parametrize(("form", "machine"), FORMS)
+@pytest.mark.parametrize("odd", range(2))
+@pytest.mark.parametrize(
+    ("index", "right", "wrong"),
+    [
+        (0, "C-7.", "C7."),
+        (0, "C-7.", "C-4."),
+        (1, "X35.", "X39."),
+        (8, "X35.", "X53."),
+        (8, "C7.", "C1."),
+    ],
+)
+def test_a_lead_that_is_tangent_in_another_pass_is_told_with_the_word_of_that(
+    form: Callable[[str], str], machine: str, odd: int, index: int, right: str, wrong: str
+) -> None:
+    contours = [[*LED], [*LED]]
+    assert said(form(passes(*contours)), machine) == []
+    contours[odd][index] = contours[odd][index].replace(right, wrong)
+    text, sound = form(passes(*contours)).splitlines(), form(passes(LED, LED)).splitlines()
+    line = next(number for number, pair in enumerate(zip(text, sound, strict=True), 1) if pair[0] != pair[1])
+    (word,) = {*sound[line - 1].split()} - {*text[line - 1].split()}
+    finding = one_finding("\n".join(text), machine)
+    assert finding.line == line
+    # Where the number is no slip of the pen, as in inch, the point of the other pass is named.
+    assert re.search(rf"\b(?:with|line \d+ at) [^;]*{number_of(word)}(?![\d.])", finding.message)
+
+
+@pytest.mark.parametrize(("form", "machine"), FORMS)
+def test_the_start_of_the_arc_that_leads_to_an_only_pass_is_told_where_it_is_written(
+    form: Callable[[str], str], machine: str
+) -> None:
+    assert said(form(passes(LED)), machine) == []
+    finding = one_finding(form(passes([LED[0].replace("C-7.", "C7."), *LED[1:]])), machine)
+    assert (finding.line, finding.rule) == (9, "nearly-regular-contour")
+
+
+def one_finding(text: str, machine: str) -> Finding:
+    radius = 5 / 25.4 if "G20" in text else 5
+    found = report_of(text, machine, f"8:radius={radius},nose=0").findings
+    (finding,) = (finding for finding in found if finding.severity != "note")
+    return finding
+
+
+def number_of(word: str) -> str:
+    """A pattern of a word, be its number written with a 0 before or behind the point or without."""
+    letter, sign, whole, part = re.fullmatch(r"([A-Z])(-?)0*(\d*)\.?(\d*?)0*", word).groups()  # type: ignore[union-attr]
+    return rf"{letter}{sign}0*{whole}\.?{part}0*"

@@ -241,7 +241,7 @@ class _Search:
             best, reach = (whole, AS_LIKELY) if whole else (partly, _LESS_LIKELY)
             if best and best[0].likely.gain - likely.gain > reach:
                 break
-            row = int(loop.row[likely.edit.corner])
+            row = loop.row_of(self.trace.run, likely.edit.corner, likely.edit.words)
             edits = [] if self._contradicts(row, likely, own) else self._edits(loop, likely)
             found = self._tried(likely, row, edits, others) if edits else None
             if found is not None and not likely.is_clear and all(rule in _OF_CUTTER for rule, _ in found.gone):
@@ -326,7 +326,7 @@ class _Search:
             likely, replaced = pairs[0][edit]
             left = self._left_by([*chain(*(other.edits for other in explained)), *replaced])
             left = before if left is None else left
-            row = int(loop.row[edit.corner])
+            row = loop.row_of(self.trace.run, edit.corner, edit.words)
             is_whole = len(sure) == len(pairs[0])
             explained.append(_Explained(likely, row, replaced, before - left, left, is_whole=is_whole, is_of_two=True))
             before = left
@@ -379,7 +379,7 @@ class _Search:
     def _edits(self, loop: WrittenLoop, likely: Likely) -> list[Replace]:
         """The edits of the text; none where its words stand there in another form."""
         run, edit = self.trace.run, likely.edit
-        row = int(loop.row[edit.corner])
+        row = loop.row_of(run, edit.corner, edit.words)
         if run.text.blocks.is_macro[run.block[row]] or (edit.kind == "twice" and not is_plain(run, row)):
             return []
         if edit.kind == "twice":

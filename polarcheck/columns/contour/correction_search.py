@@ -19,7 +19,7 @@ from polarcheck.columns.contour.likely_edits import (
     likely_outlines,
     likely_pairs,
 )
-from polarcheck.columns.contour.loop_edits import outlines_of, with_edit
+from polarcheck.columns.contour.loop_edits import Edit, outlines_of, with_edit
 from polarcheck.columns.contour.plane_loops import PlaneLoop
 from polarcheck.columns.contour.written_loop import AxisWords, WrittenLoop, written_loop
 from polarcheck.columns.trace import Trace
@@ -141,6 +141,9 @@ class _Search:
         following = np.flatnonzero(self.trace.path.travels[last + 1 :])
         return last + 1 + int(following[0]) if len(following) else last
 
+    def _row_of(self, edit: Edit) -> int:
+        return int(self.trace.run.row[edit.words[0]]) if edit.words else self._row(edit.corner)
+
     def _is_better(self, symmetry: Symmetry, trial: _Trial) -> bool:
         written, plain = self.written, trial.slip.plain
         if symmetry.corners + symmetry.arcs < (_CORNERS if symmetry.is_turned else _MIRRORED_CORNERS):
@@ -236,7 +239,7 @@ class _Search:
             symmetry = edited.symmetry(point)
             if symmetry is None:
                 continue
-            found.append((likely, correction_by(likely, self._row(edit.corner)), symmetry))
+            found.append((likely, correction_by(likely, self._row_of(edit)), symmetry))
             is_symmetric = self._is_better(symmetry, _Trial(edit.corner, -1, slip, point, edited))
             if best < 0 and is_symmetric and edit.kind not in {"arc", "sense"}:
                 best = len(found) - 1
@@ -322,7 +325,7 @@ class _Search:
             if symmetry is None or symmetry.order <= _HALF_TURN or not symmetry.mirrored:
                 continue
             if symmetry.corners + symmetry.arcs >= _CORNERS:
-                first, second = (correction_by(likely, self._row(likely.edit.corner)) for likely in pair)
+                first, second = (correction_by(likely, self._row_of(likely.edit)) for likely in pair)
                 line, becomes = int(self.trace.blocks.line[second.row]), _becomes(symmetry)
                 remedy = f"{first.remedy}, and {second.remedy} in line {line},"
                 return first._replace(remedy=remedy, becomes=becomes), second._replace(becomes=becomes)

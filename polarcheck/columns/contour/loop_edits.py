@@ -118,12 +118,13 @@ def _of_axis(trace: Trace, loop: WrittenLoop, number: int) -> Iterator[Edit]:
             value = _rounded(float(axis.value[corner]) + gap / float(axis.scale[corner]), axis)
             text = address + plain_number(value)
             yield Edit("word", corner, (word,), text, "another number is meant", _SELDOM, number, value)
-        if other.word[corner] < 0:
+        is_earlier = bool(trace.run.row[word] != loop.row[corner])
+        if other.word[corner] < 0 and not is_earlier:
             # In G91 the letter of a position is an increment, too.
             letter = other.step_address if address.strip("=") == axis.step_address.strip("=") else other.address
             text = letter + "=" * address.endswith("=") + written
             yield Edit("letter", corner, (word,), text, "it has the letter of the other axis", 0.0, number)
-        elif not number and (parts := parts_of(trace.run.written(int(other.word[corner]))))[0]:
+        elif not number and not is_earlier and (parts := parts_of(trace.run.written(int(other.word[corner]))))[0]:
             words = word, int(other.word[corner])
             text = f"{address}{parts[1]} {parts[0]}{written}"
             why = f"the numbers of {address.strip('=')} and {parts[0].strip('=')} are exchanged"
@@ -194,8 +195,7 @@ def _of_blocks(loop: WrittenLoop) -> Iterator[Edit]:
 
 def _is_same(axis: AxisWords, corner: int) -> bool:
     """A block has the word of an axis that the block before it has."""
-    both = slice(corner - 1, corner + 1)
-    return bool(np.isnan(axis.value[both]).all() or (axis.value[corner - 1] == axis.value[corner]))
+    return bool(np.isnan(axis.value[corner]) or (axis.value[corner - 1] == axis.value[corner]))
 
 
 def _sizes(values: Floats) -> tuple[float, ...]:

@@ -74,7 +74,7 @@ class PassDifferences(Columns, frozen=True):
     @cached_property
     def _alone(self) -> list[Difference]:
         """The differences of passes that are in no group."""
-        return [*self._beside, *self._on_other_side]
+        return [*self._beside, *self._on_other_side, *self._of_leads]
 
     @cached_property
     def _beside(self) -> list[Difference]:
@@ -145,6 +145,24 @@ class PassDifferences(Columns, frozen=True):
                 differences.append(Difference(row, other, False, *self._rows_of(int(beside[0]))))
         return differences
 
+    @property
+    def _of_leads(self) -> list[Difference]:
+        """The passes that begin or end with an arc that is tangent in another one of their moves, and not in them."""
+        passes, trace = self.passes, self.trace
+        is_long = passes.last - passes.first > _LEAST_AGREEING
+        if not self._are_several or not (is_long & (passes.is_arc[passes.first] | passes.is_arc[passes.last])).any():
+            return []
+        from polarcheck.columns.contour.lead_arcs import odd_leads  # imported late, as above
+
+        # What differs is the end of the block before an arc that leads to the contour.
+        travels = np.flatnonzero(trace.path.travels)
+        ends = passes.row, travels[np.searchsorted(travels, passes.row) - 1]
+        leads = ((ends[odd.begins], odd.move, odd.model) for odd in odd_leads(passes))
+        return [
+            Difference(int(row[move]), int(row[model]), False, *self._rows_of(int(passes.number[model])))
+            for row, move, model in leads
+        ]
+
     def _rows_of(self, number: int) -> tuple[int, int]:
         """The first and the last row of a pass."""
         passes = self.passes
@@ -168,11 +186,9 @@ class PassDifferences(Columns, frozen=True):
         for ramp in (1, 0):
             for number, stretches in enumerate([*written, *alike]):
                 for first, last in stretches:
-                    before, behind = (
-                        int(np.searchsorted(travels, first)) - ramp,
-                        int(np.searchsorted(travels, last)) + ramp,
-                    )
-                    column[travels[max(before, 0)] : travels[min(behind, len(travels) - 1)] + 1] = number
+                    before, behind = np.searchsorted(travels, (first, last)).tolist()
+                    near = travels[max(before - ramp, 0) : behind + 1 + ramp]
+                    column[near[0] : near[-1] + 1] = number
         return column
 
     @cached_property

@@ -11,6 +11,7 @@ from polarcheck.columns.path.lengths import same_place
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, stretch
 from polarcheck.foundation.states import STATES, Motion
+from polarcheck.program.execution.run import Run
 from polarcheck.program.machines.axis_table import INCREMENTS
 
 #: Blocks of a path that is looked at.
@@ -22,7 +23,8 @@ class AxisWords(NamedTuple):
     The words of one axis in a path of n blocks and the move before, a value for each of its n + 1 points.
 
     address, step_address: X and U. scale: float64, mm per unit. direction: where the axis points on the plane. value:
-    float64, NaN without a word. is_step: it is incremental. word: int, the executed word, -1 for none.
+    float64, NaN without a word. is_step: it is incremental. word: int, the executed word, -1 for none; of the first
+    point one of an earlier block where that is in force.
     """
 
     address: str
@@ -54,6 +56,10 @@ class WrittenLoop(NamedTuple):
     code: Rows
     arc_words: dict[str, Rows]
     tolerance: float
+
+    def row_of(self, run: Run, corner: int, words: Sequence[int]) -> int:
+        """The row of the words, or of the block without any."""
+        return int(run.row[words[0]] if words else self.row[corner])
 
     def points(self, values: Sequence[Floats], is_step: Sequence[Mask]) -> Points:
         """
@@ -103,11 +109,12 @@ def written_loop(trace: Trace, row: Rows) -> WrittenLoop:
     kind, arcs = trace.axes.motion[own], trace.machine.arcs
     turns = np.where(kind == Motion.CW, -1, np.where(kind == Motion.CCW, 1, 0)).astype(np.int64)
     codes = [code for key in STATES["motion"] for code in trace.machine.codes(key)]
+    linear, virtual = axis_words(trace, row)
     of_arcs = {address: _words(trace, own, address) for address in (arcs.radius_word, "I", "J")}
     return WrittenLoop(
         row,
         complex(trace.path.start[own[0]]),
-        axis_words(trace, row),
+        (_with_start(trace, int(row[0]), linear), _with_start(trace, int(row[0]), virtual)),
         turns,
         np.where(turns != 0, trace.lengths.length_of(arcs.radius_word)[own], np.nan),
         np.nan_to_num(trace.path.center - trace.path.start)[own],
@@ -133,6 +140,23 @@ def axis_words(trace: Trace, row: Rows) -> tuple[AxisWords, AxisWords]:
         _axis(trace, row, (linear, INCREMENTS[linear]), scale * trace.lengths.x_factor[row], direction[0]),
         _axis(trace, row, trace.axes.virtual_addresses(last), scale * of_virtual, direction[1]),
     )
+
+
+def _with_start(trace: Trace, row: int, axis: AxisWords) -> AxisWords:
+    """The words of an axis; where the move before the path has none, with that of its section which is in force."""
+    section = int(trace.mode.section[row])
+    if row < 0 or axis.word[0] >= 0 or section < 0:
+        return axis
+    rows = stretch(trace.run.row, int(trace.mode.sections.enter[section]), row)
+    last, step = (
+        words[slice(*stretch(words, *rows))][-1:].max(initial=-1)
+        for words in map(trace.blocks.word_indices, (axis.address, axis.step_address))
+    )
+    if step > last or last < 0 or trace.modal.is_step(axis.address)[trace.run.row[last]]:
+        return axis
+    value, word = axis.value.copy(), axis.word.copy()
+    value[0], word[0] = trace.run.words.value[last], last
+    return axis._replace(value=value, word=word)
 
 
 def _words(trace: Trace, row: Rows, address: str) -> Rows:

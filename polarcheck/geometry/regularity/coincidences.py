@@ -24,7 +24,7 @@ _NONE = 1e-9
 #: What each chance costs, as a number of coordinates that are as they are by chance.
 _OF_BROKEN_ARC, _OF_TURN_BACK, _OF_OPEN_END, _OF_CORNER_AT_ARC = 6.0, 3.0, 2.0, 1.5
 _OF_CORNER, _OF_SENSE, _OF_NO_MOVE, _OF_LENGTH, _OF_COORDINATE, _OF_ROUNDING = 0.2, 1.0, 3.0, 0.6, 1.0, 0.4
-_OF_IDLE_POINT = 1.5
+_OF_IDLE_POINT, _OF_LONG_LEAD = 1.5, 1.5
 
 
 class Outlines(NamedTuple):
@@ -106,6 +106,7 @@ def chances_of(outlines: Outlines, tolerance: float) -> Chances:
         + _OF_LENGTH * (_different(length_of_moves, 2 * tolerance) + _different(np.abs(point), 2 * tolerance))
         + _OF_COORDINATE * _different(np.where(is_arc, size, 0.0), tolerance)
         + _OF_ROUNDING * off
+        + _OF_LONG_LEAD * ((sweep > np.pi + _TANGENT) & ~is_circle)[:, [0, -1]].sum(axis=1)
     )
     for part in (point.real, point.imag):
         others += _OF_COORDINATE * np.minimum(_different(np.abs(part), tolerance), _different(part, tolerance))

@@ -9,7 +9,14 @@ if TYPE_CHECKING:
     from polarcheck.rules.hit import Details, Hit
 
 
-@rule(WARNING, "{left}", values=("height", "radius", "plane_x", "plane_c"), worse=("height",), once="loop")
+@rule(
+    WARNING,
+    "{left}",
+    values=("height", "radius", "plane_x", "plane_c"),
+    worse=("height",),
+    once="loop",
+    follows={"twin": ("passes-differ",)},
+)
 def material_left(coverage: Coverage) -> Hits:
     """
     Material that no tool takes off, though the contour asks for it.
