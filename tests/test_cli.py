@@ -602,6 +602,9 @@ def test_options_come_from_the_environment_too() -> None:
     assert result.exit_code == 0
     assert re.fullmatch(r"a\.nc:4:1: error: .* \[rapid-in-polar\]\n", result.stdout)
     assert call("rules", POLARCHECK_FORMAT="concise").exit_code == 0
+    wrong = check("a.nc", POLARCHECK_FAIL_ON="errors").stderr
+    assert wrong.startswith("polarcheck: POLARCHECK_FAIL_ON: Invalid value for '--fail-on': 'errors' is not one of")
+    assert check("a.nc", "--fail-on", "errors").stderr.startswith("polarcheck: Invalid value")
     # POLARCHECK_PART is the flag of check; that of init names programs. POLARCHECK_TOLERANCE is of drawings, and would
     # let compare pass by what a part may deviate.
     # Nothing of it overwrites programs.

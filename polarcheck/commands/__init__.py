@@ -77,6 +77,15 @@ class Modules(Mapping[str, click.Command]):
         return len(NAMES)
 
 
+def _variable(error: click.ClickException) -> str:
+    """The environment variable that has a wrong value, before the message; empty for other errors."""
+    option, ctx = getattr(error, "param", None), getattr(error, "ctx", None)
+    if not isinstance(option, click.Option) or ctx is None or option.name is None:
+        return ""
+    is_variable = ctx.get_parameter_source(option.name) is click.core.ParameterSource.ENVIRONMENT
+    return f"{option.envvar}: " if is_variable else ""
+
+
 class Commands(click.Group):
     """A group of commands whose errors are one line on stderr, with different exit codes for findings and failures."""
 
@@ -103,7 +112,7 @@ class Commands(click.Group):
             extra["windows_expand_args"] = False
             status = super().main(args, prog_name, standalone_mode=False, **extra) or CLEAN
         except click.ClickException as error:
-            say(_LIST.sub(r"\1 ", error.format_message()))
+            say(_variable(error) + _LIST.sub(r"\1 ", error.format_message()))
         except PolarcheckError as error:
             say(str(error))
         except (click.Abort, KeyboardInterrupt) as stop:
