@@ -33,7 +33,7 @@ def angle_between(p: Points, q: Points) -> Floats:
 def cleared(point: Points) -> Points:
     """The points, those at the center exactly there."""
     at_center = (np.abs(point.real) <= ZERO) & (np.abs(point.imag) <= ZERO)
-    return np.where(at_center, 0, point) if at_center.any() else point
+    return np.where(at_center, 0, point) if np.count_nonzero(at_center) else point
 
 
 @quiet

@@ -309,6 +309,7 @@ def of_contours(names: Iterable[str]) -> bool:
     return any(name in TABLES and TABLES[name].module.startswith(_OF_CONTOURS) for name in names)
 
 
+@functools.cache
 def parameters(maker: Callable[..., Any]) -> tuple[str, ...]:
     """The names of the parameters of a function, or of what makes an object of a class."""
     # inspect.signature costs more than most rules.

@@ -15,6 +15,7 @@ from polarcheck.foundation.arrays import (
     Table,
     cached_property,
     different,
+    first_in_run,
     first_of_each,
     median,
 )
@@ -163,7 +164,7 @@ class PassDepths(Columns, frozen=True):
     def _alike(self) -> list[tuple[Rows, Floats]]:
         """First rows and Z of contours of one tool that have moves as long, each group of them at other places."""
         trace, rows = self.trace, np.flatnonzero(self.air_cuts.walls)
-        begins = np.flatnonzero(np.diff(np.cumsum(trace.path.moves_z)[rows], prepend=-1))
+        begins = first_in_run(np.cumsum(trace.path.moves_z)[rows]).nonzero()[0]
         if len(begins) < _LEAST or np.ptp(trace.path.z[rows]) <= ROUNDING:
             return []
         first, length = rows[begins], trace.path.length[rows]
@@ -180,7 +181,7 @@ class PassDepths(Columns, frozen=True):
 def _groups(key: Rows, fewest: int) -> list[Rows]:
     """The numbers of the passes of equal keys, where they are as many."""
     order = np.argsort(key, kind="stable")
-    first = np.flatnonzero(np.diff(key[order], prepend=-1))
+    first = first_in_run(key[order]).nonzero()[0]
     return [group for group in np.split(order, first[1:]) if len(group) >= fewest]
 
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Columns, Floats, Mask, Points, Rows, States, cached_property
+from polarcheck.foundation.arrays import Columns, Floats, Mask, Points, Rows, States, cached_property, first_in_run
 from polarcheck.foundation.states import Motion, Side
 from polarcheck.geometry.plane import angle_between
 from polarcheck.geometry.tolerances import ADJUSTMENT, ROUNDING
@@ -50,12 +50,12 @@ class Passes(Columns, frozen=True):
         trace, row = self.trace, self.row
         breaks = trace.compensation.starts_up | trace.compensation.cancels | trace.mode.enters | self.moves_z_alone
         breaks |= (trace.axes.motion == Motion.RAPID) | (trace.compensation.side != trace.compensation.side_before)
-        return np.cumsum(np.diff(np.cumsum(breaks)[row], prepend=-1) != 0) - 1
+        return first_in_run(np.cumsum(breaks)[row]).cumsum() - 1
 
     @cached_property
     def first(self) -> Rows:
         """The first move of each pass."""
-        return np.flatnonzero(np.diff(self.number, prepend=-1))
+        return first_in_run(self.number).nonzero()[0]
 
     @cached_property
     def last(self) -> Rows:

@@ -9,7 +9,7 @@ import numpy as np
 
 from polarcheck.columns.path.lengths import same_place
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, column_at, side_by_side
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, column_at, first_in_run, side_by_side
 from polarcheck.foundation.states import Motion
 from polarcheck.geometry.plane import angle_between, arc_sweep
 from polarcheck.geometry.plane_path import PlanePath
@@ -118,7 +118,7 @@ def loops_of(trace: Trace) -> list[PlaneLoop]:
     if not len(rows):
         return []
     stretch = np.cumsum(begins, dtype=np.int64)[rows]
-    first = np.flatnonzero(np.diff(stretch, prepend=-1))
+    first = first_in_run(stretch).nonzero()[0]
     count = np.diff(first, append=len(rows))
     fits = (count >= _FEWEST) & (count <= _MOST)
     if not fits.any():

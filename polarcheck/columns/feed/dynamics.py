@@ -242,7 +242,7 @@ class Dynamics(Columns, frozen=True):
             (RADIUS, no_radius),
             (POSITION, missing),
         ):
-            if (rows := missing & mask).any():
+            if np.count_nonzero(rows := missing & mask):
                 reasons.append((reason, rows))
                 missing &= ~rows
         return tuple(reasons)

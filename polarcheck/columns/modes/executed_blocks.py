@@ -251,8 +251,12 @@ class ExecutedBlocks(Lookups, frozen=True):
 
     def listed(self, *keys: str) -> Mask:
         """True where the row has a G code of any of these lists of the machine, as in `reference_return`."""
+        return self.with_words(self.listed_indices(*keys))
+
+    def listed_indices(self, *keys: str) -> Rows:
+        """The executed words that are a G code of any of these lists of the machine."""
         machine = self.machine
-        return self.codes(
+        return self.code_indices(
             *machine.cached(" ".join(keys), lambda: tuple(code for key in keys for code in machine.codes(key)))
         )
 

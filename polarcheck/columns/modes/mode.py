@@ -123,8 +123,8 @@ class PolarMode(Columns, frozen=True):
 
     def first_in_section(self, mask: Mask) -> Mask:
         """The first row of a mask in each section."""
-        rows = np.flatnonzero(mask & (self.section >= 0))
-        return self.blocks.mask_of(rows[first_in_run(self.section[rows])])
+        rows = (mask & (self.section >= 0)).nonzero()[0]
+        return mask_at(len(mask), rows[first_in_run(self.section[rows])])
 
     @cached_property
     def in_polar(self) -> Mask:

@@ -23,7 +23,7 @@ class ModeWords(Columns, frozen=True):
 
     def in_rows(self, rows: Mask) -> Mask:
         """Stands in one of these rows."""
-        return rows[self.trace.run.row] if rows.any() else self.trace.blocks.no_words
+        return rows[self.trace.run.row] if np.count_nonzero(rows) else self.trace.blocks.no_words
 
     def codes(self, *names: str) -> Mask:
         """One of these G or M codes; `G54-G59` is a range."""
@@ -31,7 +31,7 @@ class ModeWords(Columns, frozen=True):
 
     def listed(self, *keys: str) -> Mask:
         """A G code of any of these lists of the machine, as in `plane_xy`."""
-        return self.codes(*(code for key in keys for code in self.trace.machine.codes(key)))
+        return self.trace.blocks.words_at(self.trace.blocks.listed_indices(*keys))
 
     def first_of(self, *names: str) -> Mask:
         """Words of the first of these names that stands in their row; `G91` is a code, `U` an address, or none."""
@@ -39,8 +39,8 @@ class ModeWords(Columns, frozen=True):
         row = trace.run.row
         first, listed = np.zeros(len(row), bool), np.zeros(len(trace), bool)
         for name in names:
-            is_named = self.codes(name) if len(name) > 1 else trace.blocks.words_at(trace.blocks.word_indices(name))
-            index = np.flatnonzero(is_named)
+            blocks = trace.blocks
+            index = blocks.code_indices(name) if len(name) > 1 else blocks.word_indices(name)
             index = index[~listed[row[index]]]
             first[index] = True
             listed[row[index]] = True

@@ -75,10 +75,10 @@ def find_sections(marks: Marks) -> Sections:
     A caller can leave what M99 returns with, but not before a G0 that stands above it.
     """
     count = len(marks.on)
-    enter = np.flatnonzero(marks.on)
+    enter = marks.on.nonzero()[0]
     if not len(enter):
         return Sections(enter, enter, np.zeros(0, bool), np.zeros(0, bool), enter)
-    closers = np.flatnonzero(marks.on | marks.off | marks.starts)
+    closers = (marks.on | marks.off | marks.starts).nonzero()[0]
     end = _first_after(closers, enter, count)
     # A program that begins with a switch, as in `O2 G12.1`, begins first of all.
     closed_by = np.append(np.select([marks.starts, marks.off], [3, 1], 2), 3)[end]
@@ -86,31 +86,31 @@ def find_sections(marks: Marks) -> Sections:
     by_bound = by_end & marks.broken_off[end - 1]
     by_end &= ~by_bound
 
-    last_cut = np.maximum(enter, _last_before(np.flatnonzero(marks.cuts), end))
-    tool_end = _first_after(np.flatnonzero(marks.tool_ends), last_cut, count)
+    last_cut = np.maximum(enter, _last_before(marks.cuts.nonzero()[0], end))
+    tool_end = _first_after(marks.tool_ends.nonzero()[0], last_cut, count)
     tool_end = np.where(
-        by_off, _first_after(np.flatnonzero(marks.tool_ends & ~marks.tools_in_mode), last_cut, count), tool_end
+        by_off, _first_after((marks.tool_ends & ~marks.tools_in_mode).nonzero()[0], last_cut, count), tool_end
     )
-    outside = _first_after(np.flatnonzero(marks.tool_ends | marks.outside), last_cut, count)
-    rapid = _first_after(np.flatnonzero(marks.tool_ends | marks.outside | marks.rapid), last_cut, count)
+    outside = _first_after((marks.tool_ends | marks.outside).nonzero()[0], last_cut, count)
+    rapid = _first_after((marks.tool_ends | marks.outside | marks.rapid).nonzero()[0], last_cut, count)
     if marks.rapid_stands:
         rapid = np.where(by_on & (last_cut <= enter), outside, rapid)
     # Before any cut a plane is that of the section.
-    plane = np.where(last_cut > enter, _first_after(np.flatnonzero(marks.planes), last_cut, count), count)
-    stop = _first_after(np.flatnonzero(marks.stops), outside, count)
+    plane = np.where(last_cut > enter, _first_after(marks.planes.nonzero()[0], last_cut, count), count)
+    stop = _first_after(marks.stops.nonzero()[0], outside, count)
     forgotten = ((by_off | by_bound) & (np.minimum(tool_end, stop) < end)) | by_end
     forgotten |= by_on & (np.minimum(rapid, plane) < end)
     limit = np.minimum(np.minimum(np.where(by_on, rapid, outside), plane), end)
     # Where G0 cannot stand in the mode, what follows it without the second axis is turned.
-    last_move = np.maximum(enter, _last_before(np.flatnonzero(marks.moves), limit))
+    last_move = np.maximum(enter, _last_before(marks.moves.nonzero()[0], limit))
     if not marks.rapid_stands:
         last_move = np.where(last_cut > enter, last_cut, last_move)
     repeated = np.append(False, by_on & ~forgotten)[:-1]
     final = np.append(np.flatnonzero(~repeated)[1:] - 1, len(enter) - 1)
     is_empty = (last_move <= enter) & ~repeated & ~by_on
-    rapid_after = _first_after(np.flatnonzero(marks.tool_ends | marks.outside | marks.rapid), last_move, count)
+    rapid_after = _first_after((marks.tool_ends | marks.outside | marks.rapid).nonzero()[0], last_move, count)
     intended = np.minimum(np.where(is_empty, outside, rapid_after), limit)
-    last_return = _last_before(np.flatnonzero(marks.returns), end)
+    last_return = _last_before(marks.returns.nonzero()[0], end)
     returned = ((forgotten & (last_return >= last_cut) & (intended > last_return)) | (by_bound & ~forgotten))[final]
     return Sections(
         enter[~repeated],
@@ -134,9 +134,9 @@ def section_column(sections: Sections, count: int) -> Rows:
 
 def _first_after(rows: Rows, start: Rows, none: int) -> Rows:
     """For each of `start` the first of the sorted rows after it."""
-    return np.append(rows, none)[np.searchsorted(rows, start, side="right")]
+    return np.concatenate((rows, (none,)))[rows.searchsorted(start, side="right")]
 
 
 def _last_before(rows: Rows, end: Rows) -> Rows:
     """For each of `end` the last of the sorted rows before it, -1 where none is."""
-    return np.concatenate(([-1], rows))[np.searchsorted(rows, end, side="left")]
+    return np.concatenate(((-1,), rows))[rows.searchsorted(end)]

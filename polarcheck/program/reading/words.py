@@ -229,7 +229,7 @@ def read_words(
 
 def _block_of(positions: Positions, starts: Positions) -> Positions:
     """The block in which each position lies."""
-    return np.searchsorted(starts, positions, side="right") - 1
+    return starts.searchsorted(positions, side="right") - 1
 
 
 def _outside_prose(strays: Positions, prose: Ranges, starts: Positions) -> Positions:
