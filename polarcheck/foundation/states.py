@@ -13,7 +13,7 @@ def plain(states: _States) -> _States:
     """
     Make the names of an enum give its plain numbers.
 
-    NumPy takes 6 us to see that a member of an enum is a number, as long as to compare a column of 5,000 rows with it.
+    NumPy takes 6 us to see that a member of an enum is a number, four times the comparison of a small column with one.
     """
     for name, member in states.__members__.items():
         type.__setattr__(states, name, int(member))
