@@ -31,9 +31,8 @@ _MOST = 1024
 
 def sarif(report: Report, background: Background) -> str:
     """Return a run with a result per finding, silenced or not, and a notification per reason for "not evaluated"."""
-    silenced = {finding.rule: finding for file in report.files for finding in file.silenced}
-    findings = {finding.rule: finding for file in report.files for finding in file.findings}
-    names = sorted({*silenced, *findings})
+    has_silenced = any(file.silenced for file in report.files)
+    names = sorted({finding.rule for file in report.files for finding in (*file.silenced, *file.findings)})
     indices = {name: index for index, name in enumerate(names)}
     failures = list(_failures(report, background))
     settings = [{"level": "note", "message": {"text": line}} for line in settings_lines(report)]
@@ -44,7 +43,7 @@ def sarif(report: Report, background: Background) -> str:
                 "name": report.tool.name,
                 "version": report.tool.version,
                 "semanticVersion": report.tool.version,
-                "rules": [_rule(name, background.rules.get(name), {**silenced, **findings}[name]) for name in names],
+                "rules": [_rule(name, background.rules.get(name)) for name in names],
             }
         },
         "automationDetails": {"id": f"{report.tool.name}/"},
@@ -53,7 +52,7 @@ def sarif(report: Report, background: Background) -> str:
         "originalUriBaseIds": {_ROOT: {"description": {"text": "The root of the repository."}}},
         "invocations": [{"executionSuccessful": not failures, "toolExecutionNotifications": notifications}],
         "results": [
-            _result(finding, file, indices, background, bool(silenced))
+            _result(finding, file, indices, background, has_silenced)
             for file in report.files
             for finding in sorted(
                 (*file.findings, *file.silenced), key=lambda finding: (finding.line, finding.column, finding.rule)
@@ -63,7 +62,7 @@ def sarif(report: Report, background: Background) -> str:
     return encoded({"$schema": _SCHEMA, "version": "2.1.0", "runs": [run]}, indent=2) + "\n"
 
 
-def _rule(name: str, rule: Rule | None, finding: Finding) -> dict[str, Any]:
+def _rule(name: str, rule: Rule | None) -> dict[str, Any]:
     """Return the entry of a rule with a result; a finding about the check itself has a rule without a page."""
     name = visible(name)
     if rule is None:

@@ -287,7 +287,7 @@ class _Search:
                         if abs(shift) > tolerance
                     ]
                     if all(word >= 0 and not axis.is_step[corner] for axis, word, _ in words):
-                        yield self._elsewhere(corner, complex(place[0]), words)
+                        yield self._elsewhere(corner, words)
 
     def _of_crossed_leads(self, place: complex, odd: complex) -> Iterator[_Trial]:
         """The outer ends of the first and the last line, of which one crosses the other elsewhere than at a place."""
@@ -345,7 +345,7 @@ class _Search:
         words = [(axis, word, shift) for axis, word, shift in words if abs(shift) > self.tolerance]
         if len(words) != 1 or words[0][1] < 0 or words[0][0].is_step[corner]:
             return None
-        trial = self._elsewhere(corner, place, words)
+        trial = self._elsewhere(corner, words)
         written, needed = (parts_of(text)[1] for text in (self.trace.run.written(words[0][1]), trial.slip.text))
         if not (written and needed):
             return None
@@ -354,7 +354,7 @@ class _Search:
             slip = Slip("", "it is that of the block before it", False)
         return None if slip is None else trial._replace(slip=slip._replace(text=trial.slip.text))
 
-    def _elsewhere(self, corner: int, place: complex, words: list[tuple[AxisWords, int, float]]) -> _Trial:
+    def _elsewhere(self, corner: int, words: list[tuple[AxisWords, int, float]]) -> _Trial:
         """The block with other words, and what follows it with them."""
         values, moved, texts = self.trace.run.words.value, self.loop.point.copy(), []
         for axis, word, shift in words:

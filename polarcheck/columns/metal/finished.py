@@ -75,7 +75,7 @@ class Finished(Columns, frozen=True):
         Sections at one Z on one face are one level, as flats that are cut one after another with C between them; those
         at whose beginning C is not known are levels of their own, as they are programmed.
         """
-        return self._put_together(self.levels, *self.overcuts.walls)
+        return self._put_together(self.levels)
 
     @cached_property
     def of_sections_put_together(self) -> list[Level]:
@@ -108,9 +108,9 @@ class Finished(Columns, frozen=True):
     @cached_property
     def meant_of_part(self) -> list[Level]:
         """The same in the frame of the part, joined over sections."""
-        return self._put_together(self.meant, *self.overcuts.walls_of_unknown_radius)
+        return self._put_together(self.meant)
 
-    def _put_together(self, levels: list[Level], walls: Curves, left: Mask) -> list[Level]:
+    def _put_together(self, levels: list[Level]) -> list[Level]:
         trace, knows_entry = self.trace, self.trace.path.knows_section_entry
         groups: dict[tuple[float, ...], list[Level]] = {}
         for level in levels:

@@ -122,7 +122,7 @@ def difference(
         between = _between_walls(part, drawn, metal)[part.way.of[part.way.at(places[0])[1]]]
         places = places[0], places[1] & ~between
     first = _extremes(part.way, lambda points: _from_part(part, drawn, points, skips_gaps), places)
-    of_part = _difference(part, first, lambda points: part.way.of[part.way.nearest(points)[2]])
+    of_part = _difference(first, lambda points: part.way.of[part.way.nearest(points)[2]])
     of_part = of_part._replace(turned=rounds.turned_radius, is_broken=rounds.is_broken, outside=outside)
     of_part = of_part._replace(is_beyond=_lies_beyond(drawn, part.bar, tolerance))
     if not both_ways:
@@ -136,7 +136,7 @@ def difference(
     second = _extremes(drawn, lambda points: _from_drawing(part, points), (along, compared))
     if not second.length:
         return of_part
-    of_drawing = _difference(part, second, lambda points: part.way.of[part.way.nearest(points)[2]])
+    of_drawing = _difference(second, lambda points: part.way.of[part.way.nearest(points)[2]])
     proud = of_part if of_part.proud >= of_drawing.proud else of_drawing
     deep = of_part if of_part.deep >= of_drawing.deep else of_drawing
     return of_part._replace(
@@ -291,6 +291,6 @@ def _middle(along: Floats, largest: Mask, otherwise: float) -> float:
     return float(low[longest] + high[longest]) / 2 if high[longest] > low[longest] else otherwise
 
 
-def _difference(part: MachinedPart, extremes: _Extremes, element: Callable[[Points], Rows]) -> Difference:
+def _difference(extremes: _Extremes, element: Callable[[Points], Rows]) -> Difference:
     of = [int(element(np.array([point]))[0]) if size > 0 else -1 for size, point in (extremes.proud, extremes.deep)]
     return Difference(*extremes.proud, of[0], *extremes.deep, of[1], extremes.mean, extremes.length)

@@ -131,7 +131,7 @@ def _simplified(corner: Points, bulge: Floats) -> Ring:
             gone = gone[np.append(True, np.diff(gone) > 1)]
             if len(gone) > 1 and gone[0] == 0 and gone[-1] == len(corner) - 1:
                 gone = gone[:-1]
-            joined = _joined(before[gone], after[gone], into[gone], out[gone])
+            joined = _joined(into[gone], out[gone])
             bulge = bulge.copy()
             bulge[gone - 1] = joined
         stays = ~mask_at(len(corner), gone)
@@ -158,7 +158,7 @@ def _is_within(before: Points, corner: Points, after: Points, into: Floats, out:
     return np.asarray(on_line | on_circle)
 
 
-def _joined(before: Points, after: Points, into: Floats, out: Floats) -> Floats:
+def _joined(into: Floats, out: Floats) -> Floats:
     """The bulge of two edges of one line or circle together."""
     return np.asarray(np.tan(np.arctan(into) + np.arctan(out)))
 

@@ -56,7 +56,7 @@ def _lines(comparison: Comparison, sizes: Sizes, paint: Paint) -> Iterator[str]:
     if old.machine != new.machine:
         yield f"  machines: {visible(old.machine)} | {visible(new.machine)}"
     for section in comparison.sections:
-        yield from _section(section, sizes)
+        yield from _section(section)
     if comparison.outside:
         yield "  outside of sections:"
         yield from (f"    {_difference(difference)}" for difference in comparison.outside)
@@ -94,7 +94,7 @@ def _kinds(comparison: Comparison) -> list[str]:
     return [kind for kind in dict.fromkeys((*_KINDS.values(), "state at entry")) if kind in kinds]
 
 
-def _section(section: SectionPair, sizes: Sizes) -> Iterator[str]:
+def _section(section: SectionPair) -> Iterator[str]:
     if section.change == "same":
         return
     yield f"  section {_lines_of(section.old)} | {_lines_of(section.new)}: {section.change}"

@@ -94,7 +94,7 @@ def rolled(original: Original, options: Rolling) -> Outcome:
         differences = result.differences or measured.differences
         if not differences:
             notes = [
-                *_notes(original, sections, rule, options),
+                *_notes(original, sections, rule),
                 *result.notes,
                 *(f"line {refusal.line}: left as it is: {refusal.text}" for refusal in dict.fromkeys(refusals)),
             ]
@@ -192,7 +192,7 @@ def _figures(sections: Sequence[Section], measured: Measured) -> list[Figure]:
     ]
 
 
-def _notes(original: Original, sections: Sequence[Section], rule: str, options: Rolling) -> list[str]:
+def _notes(original: Original, sections: Sequence[Section], rule: str) -> list[str]:
     trace, notes = original.trace, []
     for section in sections:
         stretch, elements = section.stretch, section.fit.elements

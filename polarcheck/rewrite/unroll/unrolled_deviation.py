@@ -58,7 +58,7 @@ def measured(
     if len(unknown):
         text = "where the tool is before this move is not known: a tool is called, or an axis referenced"
         return Measured([Refusal(_line(old, steps, int(unknown[0])), text)])
-    distance = _distance(old, center.moves, run, steps)
+    distance = _distance(center.moves, run, steps)
     differences += _of_blocks(old, run, steps, distance, chord_error)
     moves = center.moves
     at_feed = old.axes.motion[moves.row] != Motion.RAPID
@@ -138,7 +138,7 @@ class _Run:
             self.x_rate = np.where(step == 0, 0.0, 60 * np.abs(step) / self.time)
 
 
-def _distance(old: Trace, moves: Moves, run: _Run, steps: Steps) -> Floats:
+def _distance(moves: Moves, run: _Run, steps: Steps) -> Floats:
     """
     Return the largest distance of the tool center from its path in each block [mm], computed from the actual C, not
     from the division.
