@@ -115,11 +115,12 @@ class AirCuts(Columns, frozen=True):
         rises = (last >= 0) & (before[row] < z[enter]) & (before[row] > _ABOVE)
         return np.append(np.where(rises, before[row], z[enter]), np.nan)[self.trace.mode.section]
 
-    def _of_section(self, values: Floats, rows: Mask, fold: np.ufunc, none: float) -> Floats:
-        """The least or largest of the values of some rows of each section, for each row of the section."""
-        result = folded(fold, self.trace.mode.section[rows], values[rows], len(self.trace.mode.sections) + 1, none)
+    def _of_section(self, values: Floats, fold: np.ufunc, none: float) -> Floats:
+        """The least or largest of the values of the walls of each section, for each row of the section."""
+        section, count = self.trace.mode.section, len(self.trace.mode.sections) + 1
+        result = folded(fold, section[self.walls], values[self.walls], count, none)
         result[-1] = none
-        return np.asarray(result[self.trace.mode.section])
+        return np.asarray(result[section])
 
     def _behind(self, mask: Mask) -> Rows:
         """The first row of the mask behind each section; -1 for none."""
@@ -158,7 +159,7 @@ class AirCuts(Columns, frozen=True):
 
     @cached_property
     def _lowest(self) -> Floats:
-        return self._of_section(self.trace.path.z, self.walls, np.minimum, np.inf)
+        return self._of_section(self.trace.path.z, np.minimum, np.inf)
 
     @cached_property
     def _idle_behind(self) -> Mask:
@@ -176,8 +177,8 @@ class AirCuts(Columns, frozen=True):
         inside = trace.mode.in_polar
         still = ~trace.mode.anywhere_in_section(inside & (np.abs(trace.path.z - self._entry) > ROUNDING))
         rows = np.arange(len(trace), dtype=np.float64)
-        first = self._of_section(rows, self.walls, np.minimum, np.inf)
-        last = self._of_section(rows, self.walls, np.maximum, -1).astype(np.int64)
+        first = self._of_section(rows, np.minimum, np.inf)
+        last = self._of_section(rows, np.maximum, -1).astype(np.int64)
         earlier = trace.mode.anywhere_in_section(inside & trace.axes.commands_z & (rows < first))
         near = (self._entry > _ABOVE) & (self._entry < _FARTHEST)
         return np.asarray(still & near & self._idle_behind[last] & ~earlier)
@@ -266,7 +267,7 @@ class AirCuts(Columns, frozen=True):
         reach = trace.path.moves_of(rows).nearest - self.workpiece.radius[rows]
         outside = np.nan_to_num(reach - self.bar.outer(rows, trace.path.z[rows]), nan=-np.inf)
         beyond = column_at(len(trace), rows, outside, np.inf)
-        return np.asarray(self._of_section(beyond, self.walls, np.minimum, np.inf) > ROUNDING)
+        return np.asarray(self._of_section(beyond, np.minimum, np.inf) > ROUNDING)
 
     @property
     def _point_outside(self) -> Mask:

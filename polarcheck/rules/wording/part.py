@@ -51,7 +51,8 @@ def shape_in_words(shape: Shape, line_of: Callable[[int], int], sizes: Sizes, ho
     line_of: the line of a row of the program.
     """
     value = shape.values
-    told = _TOLD.get(shape.name, _polygon)(shape, line_of, sizes)
+    words = _TOLD.get(shape.name)
+    told = words(shape, sizes) if words else _polygon(shape, line_of, sizes)
     told += _corners(value, sizes)
     if shape.name != "circle" and "turned" in value and (how.from_c0 or not how.short):
         told += _turned(shape)
@@ -86,16 +87,15 @@ def angle_in_words(angle: float) -> str:
 
 
 _Told = list[str]
-_Line = Callable[[int], int]
 
 
-def _circle(shape: Shape, line_of: _Line, sizes: Sizes) -> _Told:
+def _circle(shape: Shape, sizes: Sizes) -> _Told:
     value = shape.values
     chords = [f"in {value['chords']:.0f} straight lines"] if "chords" in value else []
     return [f"circle {sizes(value['diameter'])}", *chords]
 
 
-def _polygon(shape: Shape, line_of: _Line, sizes: Sizes) -> _Told:
+def _polygon(shape: Shape, line_of: Callable[[int], int], sizes: Sizes) -> _Told:
     value = shape.values
     if "across_flats" not in value or "regular_by_x" in value:
         return _uneven(shape, line_of, sizes)
@@ -113,7 +113,7 @@ def _polygon(shape: Shape, line_of: _Line, sizes: Sizes) -> _Told:
     return told
 
 
-def _uneven(shape: Shape, line_of: _Line, sizes: Sizes) -> _Told:
+def _uneven(shape: Shape, line_of: Callable[[int], int], sizes: Sizes) -> _Told:
     value = shape.values
     told = [f"polygon with {value['sides']:.0f} sides"] if shape.name == "polygon" else [shape.name, "not regular"]
     if "least" in value:
@@ -129,11 +129,11 @@ def _uneven(shape: Shape, line_of: _Line, sizes: Sizes) -> _Told:
     return told
 
 
-def _rectangle(shape: Shape, line_of: _Line, sizes: Sizes) -> _Told:
+def _rectangle(shape: Shape, sizes: Sizes) -> _Told:
     return [f"rectangle {sizes(shape.values['length'])} x {sizes(shape.values['width'])}"]
 
 
-def _round_with_flats(shape: Shape, line_of: _Line, sizes: Sizes) -> _Told:
+def _round_with_flats(shape: Shape, sizes: Sizes) -> _Told:
     value = shape.values
     count = int(value["flats"])
     told = [f"round {sizes(value['diameter'])} with {'one flat' if count == 1 else f'{count} flats'}"]
@@ -162,7 +162,7 @@ def _each(value: Mapping[str, float], middle: str, sizes: Sizes) -> str:
     return f"{enumerated(flats)} from the {middle}"
 
 
-def _flats(shape: Shape, line_of: _Line, sizes: Sizes) -> _Told:
+def _flats(shape: Shape, sizes: Sizes) -> _Told:
     value = shape.values
     count = int(value["flats"])
     if "apart" in value:
@@ -179,7 +179,7 @@ def _away(distance: float, middle: str, sizes: Sizes) -> str:
     return f"{sizes(abs(distance))} {'from' if distance >= 0 else 'beyond'} the {middle}"
 
 
-def _slot(shape: Shape, line_of: _Line, sizes: Sizes) -> _Told:
+def _slot(shape: Shape, sizes: Sizes) -> _Told:
     value = shape.values
     if "length" not in value:
         return [f"slot {sizes(value['width'])} wide", "open at both ends"]
@@ -187,14 +187,14 @@ def _slot(shape: Shape, line_of: _Line, sizes: Sizes) -> _Told:
     return [f"{kind} {sizes(value['width'])} x {sizes(value['length'])}", f"ends R{sizes(value['radius'])}"]
 
 
-def _keyway(shape: Shape, line_of: _Line, sizes: Sizes) -> _Told:
+def _keyway(shape: Shape, sizes: Sizes) -> _Told:
     value = shape.values
     end = f"round end R{sizes(value['radius'])}" if "radius" in value else "square end"
     bottom = f"its bottom {_away(value['distance'], 'center', sizes)}"
     return [f"keyway {sizes(value['width'])} wide", bottom, end]
 
 
-def _round_with_keyway(shape: Shape, line_of: _Line, sizes: Sizes) -> _Told:
+def _round_with_keyway(shape: Shape, sizes: Sizes) -> _Told:
     value = shape.values
     count, is_key = int(value["keyways"]), (value["distance"] > value["diameter"] / 2) != shape.inside
     name, end = ("key", "top") if is_key else ("keyway", "bottom")
@@ -205,27 +205,27 @@ def _round_with_keyway(shape: Shape, line_of: _Line, sizes: Sizes) -> _Told:
     return told + ([f"round end R{sizes(value['radius'])}"] if "radius" in value else [])
 
 
-def _cam(shape: Shape, line_of: _Line, sizes: Sizes) -> _Told:
+def _cam(shape: Shape, sizes: Sizes) -> _Told:
     value = shape.values
     return [f"cam R{sizes(value['radius'])} and R{sizes(value['radius_small'])}", f"{sizes(value['apart'])} apart"]
 
 
-def _cross(shape: Shape, line_of: _Line, sizes: Sizes) -> _Told:
+def _cross(shape: Shape, sizes: Sizes) -> _Told:
     value = shape.values
     one = f"{sizes(value['length'])} x {sizes(value['width'])}"
     other = f"{sizes(value['other_length'])} x {sizes(value['other_width'])}"
     return [f"cross, arms {one}" if one == other else f"cross, arms {one} and {other}"]
 
 
-def _contour(shape: Shape, line_of: _Line, sizes: Sizes) -> _Told:
+def _contour(shape: Shape, sizes: Sizes) -> _Told:
     return ["contour"]
 
 
-def _groove(shape: Shape, line_of: _Line, sizes: Sizes) -> _Told:
+def _groove(shape: Shape, sizes: Sizes) -> _Told:
     return [f"groove {sizes(shape.values['width'])} wide"]
 
 
-_TOLD: Mapping[str, Callable[[Shape, _Line, Sizes], _Told]] = {
+_TOLD: Mapping[str, Callable[[Shape, Sizes], _Told]] = {
     "circle": _circle,
     "rectangle": _rectangle,
     "round with flats": _round_with_flats,

@@ -47,7 +47,7 @@ _POINTS = 72 / 25.4
 
 def printable(text: str) -> str:
     """Return text without control characters and without characters that the font lacks."""
-    glyphs = _glyphs(False)
+    glyphs = _glyphs()
     return "".join(sign if ord(sign) in glyphs else _LACKING for sign in visible(text.replace("\t", " ")))
 
 
@@ -57,9 +57,9 @@ def _font(bold: bool) -> FT2Font:
 
 
 @cache
-def _glyphs(bold: bool) -> dict[int, int]:
+def _glyphs() -> dict[int, int]:
     """Return the glyph of each character."""
-    return dict(_font(bold).get_charmap())
+    return dict(_font(False).get_charmap())
 
 
 @cache
