@@ -11,6 +11,7 @@ import numpy as np
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Mask
 from polarcheck.foundation.states import STATES
+from polarcheck.program.reading.excerpt import shortened
 from polarcheck.rewrite.compare.compared_sections import NOWHERE
 from polarcheck.rewrite.compensate.pieces import Piece
 from polarcheck.rewrite.compensate.section_moves import consecutive
@@ -25,6 +26,8 @@ _GROUPS = ("motion", "side", "distance")
 _CODES = {0: "G1", 1: "G3", -1: "G2"}
 #: A word with a number, also of an address with several letters, as CR=5.
 _NUMBER = re.compile(r"[A-Za-z]*=?[-+]?[\d.]+")
+#: Characters of a block in a reason.
+_LONGEST = 40
 
 
 class Stroke(msgspec.Struct, frozen=True):
@@ -187,9 +190,8 @@ class _Writer:
         words = [written_word(run, index) for index in words_of(run, row)]
         is_macro = run.text.blocks.is_macro[int(run.block[row])]
         if not is_plain(run, row) and (is_macro or not all(map(_NUMBER.fullmatch, words))):
-            raise refused_at(
-                self.trace, row, "its words are expressions, or in another language: write them as numbers first"
-            )
+            block = shortened(" ".join(trace.text.without_comments(int(run.block[row])).split()), _LONGEST)
+            raise refused_at(trace, row, f"{block}: an expression or a statement: write its words as numbers first")
         if trace.path.frames is not None:
             raise refused_at(self.trace, row, "the program shifts or turns its coordinates by frames")
 

@@ -20,7 +20,7 @@ _DROPPED = (
     *("frame_shift", "frame_shift_added", "frame_rotation", "frame_rotation_added"),
 )
 #: Why a block with a word that a statement computes is refused.
-_COMPUTED = "a word of this block cannot be written without the statement around it"
+_COMPUTED = "a word that cannot be written without the statement around it: write it as a number first"
 
 
 class RemainingWords:
@@ -68,7 +68,7 @@ class RemainingWords:
         words = words_behind_head(run, row)
         if self._untouched[row]:
             if words and not plain:
-                raise refused_at(self.trace, row, _COMPUTED)
+                raise refused_at(self.trace, row, f"{written_word(run, words[0])}: {_COMPUTED}")
             return [written_word(run, index) for index in words]
         texts = []
         for index in words:
@@ -86,5 +86,5 @@ class RemainingWords:
         words = self.trace.run.words
         letter, value = chr(int(words.address[index])), float(words.value[index])
         if letter not in "GMST" or not math.isfinite(value):
-            raise refused_at(self.trace, row, _COMPUTED)
+            raise refused_at(self.trace, row, f"{written_word(self.trace.run, index)}: {_COMPUTED}")
         return f"{letter}{value:.15g}"
