@@ -14,7 +14,7 @@ from polarcheck.geometry.tolerances import ADJUSTMENT, ROUNDING
 from polarcheck.program.machines.code_lists import expanded
 from polarcheck.rewrite.compensate.section_moves import Move, of_section
 from polarcheck.rewrite.writing.outcome import Refusal, RefusedError, radius_not_known, refusal_at, refused_at
-from polarcheck.rewrite.writing.refused_sections import AGAIN, refusals_in_sections
+from polarcheck.rewrite.writing.refused_sections import checks_of_switches, refusals_in_sections
 from polarcheck.rules.wording.offsets import called_tool, example, to_give
 
 
@@ -73,15 +73,15 @@ def _require_sound_switches(trace: Trace) -> None:
     offsets are set in it.
     """
     compensation, mode = trace.compensation, trace.mode
-    if again := list(refusals_in_sections(trace, [(mode.enters_again, AGAIN)])):
-        raise RefusedError(again)
-    left = np.flatnonzero(mode.sections.returned)
-    if len(left):
-        raise refused_at(trace, int(mode.sections.enter[left[0]]), "what leaves the polar mode is not in this program")
     sets = trace.blocks.listed("data_input") | trace.blocks.assigns(trace.machine.macro.tool_offset_variables)
-    sets_offset = np.flatnonzero(mode.in_polar & sets)
-    if len(sets_offset):
-        raise refused_at(trace, int(sets_offset[0]), "offsets are set in the polar mode: write that before the section")
+    is_open = trace.blocks.mask_of(mode.sections.enter[mode.sections.returned])
+    checks = [
+        checks_of_switches(trace)[0],
+        (is_open, "what leaves the polar mode is not in this program"),
+        (mode.in_polar & sets, "offsets are set in the polar mode: write that before the section"),
+    ]
+    if refusals := list(refusals_in_sections(trace, checks)):
+        raise RefusedError(refusals)
     side = trace.modal.state("side")
     on = mode.enters & ~compensation.writes_cancel & ((side == Side.LEFT) | (side == Side.RIGHT))
     off = mode.leaves & (compensation.side_of_move_before != Side.OFF)

@@ -16,11 +16,10 @@ from polarcheck.rewrite.convert.doubtful_values import Basis
 from polarcheck.rewrite.writing.original import Original
 from polarcheck.rewrite.writing.outcome import Refusal
 from polarcheck.rewrite.writing.refused_sections import (
-    AGAIN,
     Check,
     checks_of_sections,
+    checks_of_switches,
     refusals_in_sections,
-    refusals_of_ends,
 )
 
 #: Shares of F that differ by less, by the larger one, are the same.
@@ -71,9 +70,8 @@ def refusals(original: Original, is_same: bool, why_not: Callable[[int], str]) -
     why it becomes a comment as it is; empty for others.
     """
     trace = original.trace
-    again = (trace.mode.enters_again, AGAIN)
-    checks = [again] if is_same else [*checks_of_sections(trace, trace.mode.is_followed), *_of_rows(trace)]
-    reasons = [*refusals_of_ends(trace), *refusals_in_sections(trace, checks)]
+    of_section = [*checks_of_sections(trace, trace.mode.is_followed), *_of_rows(trace)]
+    reasons = list(refusals_in_sections(trace, checks_of_switches(trace) if is_same else of_section))
     if not is_same:
         reasons += [reason for row, reason in original.unpointed if not why_not(row)]
     return sorted(dict.fromkeys(reasons), key=lambda reason: reason.line)

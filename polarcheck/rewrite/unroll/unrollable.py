@@ -18,7 +18,6 @@ from polarcheck.rewrite.writing.refused_sections import (
     checks_of_sections,
     never_left,
     refusals_in_sections,
-    refusals_of_ends,
 )
 from polarcheck.rewrite.writing.unknown_moves import UnknownMoves
 from polarcheck.rules.editing import written_word
@@ -67,7 +66,7 @@ def stretches(trace: Trace) -> list[Stretch]:
 def refusals(tables: Tables, sections: list[Stretch]) -> list[Refusal]:
     """Return the reasons why sections cannot be unrolled, each once per line."""
     trace: Trace = tables["trace"]
-    reasons = [*refusals_of_ends(trace), *refusals_in_sections(trace, _checks(tables))]
+    reasons = list(refusals_in_sections(trace, _checks(tables)))
     is_open = never_left(trace)
     for section in sections:
         reasons += () if is_open[section.number] else _of_section(trace, section)

@@ -12,7 +12,6 @@ from polarcheck.rewrite.writing.outcome import Refusal, refusal_at
 
 #: Rows that cannot be rewritten, and why; of a reason that depends on the row the function that gives it.
 Check = tuple[Mask, str | Callable[[Trace, int], str]]
-AGAIN = "the polar mode is switched on again within"
 
 
 def refusals_in_sections(trace: Trace, checks: Iterable[Check]) -> Iterator[Refusal]:
@@ -22,26 +21,27 @@ def refusals_in_sections(trace: Trace, checks: Iterable[Check]) -> Iterator[Refu
             yield refusal_at(trace, row, text if isinstance(text, str) else text(trace, row))
 
 
-def checks_of_sections(trace: Trace, is_followed: Mask) -> list[Check]:
-    """Return what nobody can rewrite. is_followed: a boolean per row: the axes of its section are followed."""
-    mode, inside = trace.mode, trace.mode.in_polar
-    return [
-        (mode.enters_again, AGAIN),
-        (trace.blocks.has(trace.machine.polar.infeed_word) & mode.enters, "an infeed cycle makes the passes"),
-        (trace.run.unknown & inside, "what this block does is not known"),
-        (inside & ~is_followed, "the axes of this section are not followed"),
-        (inside & (trace.axes.linear_axis != ord("X")), "the linear axis of this section is not X"),
-        (inside & trace.modal.in_cycle & trace.axes.moves, "a cycle in the mode is not followed"),
-    ]
-
-
 def never_left(trace: Trace) -> Mask:
     """Return a boolean per section: nothing in its program leaves the mode."""
     sections = trace.mode.sections
     return np.asarray(~sections.left | sections.returned | (sections.leave >= len(trace)))
 
 
-def refusals_of_ends(trace: Trace) -> Iterator[Refusal]:
-    """Yield the sections that are never left."""
-    rows = trace.mode.sections.enter[never_left(trace)].tolist()
-    yield from (refusal_at(trace, row, "the polar mode is never left") for row in rows)
+def checks_of_switches(trace: Trace) -> list[tuple[Mask, str]]:
+    """Return the sections that are never left, and those that are switched on twice."""
+    enters = trace.mode.sections.enter[never_left(trace)]
+    again = (trace.mode.enters_again, "the polar mode is switched on again within")
+    return [again, (trace.blocks.mask_of(enters), "the polar mode is never left")]
+
+
+def checks_of_sections(trace: Trace, is_followed: Mask) -> list[Check]:
+    """Return what nobody can rewrite. is_followed: a boolean per row: the axes of its section are followed."""
+    mode, inside = trace.mode, trace.mode.in_polar
+    return [
+        *checks_of_switches(trace),
+        (trace.blocks.has(trace.machine.polar.infeed_word) & mode.enters, "an infeed cycle makes the passes"),
+        (trace.run.unknown & inside, "what this block does is not known"),
+        (inside & ~is_followed, "the axes of this section are not followed"),
+        (inside & (trace.axes.linear_axis != ord("X")), "the linear axis of this section is not X"),
+        (inside & trace.modal.in_cycle & trace.axes.moves, "a cycle in the mode is not followed"),
+    ]
