@@ -1109,3 +1109,23 @@ def test_f_of_plain_moves_of_c_is_decided_where_it_may_count_otherwise(target: s
         (decision.line, decision.text[:4].rstrip(":")) for decision in outcome.decisions if decision.text[0] == "F"
     ]
     assert found == expected
+
+
+@pytest.mark.ci
+@looped(
+    ("source", "target", "switches", "code"),
+    [
+        ("gsk-988", "fanuc-30i", ("G12.1", "G13.1"), "G18"),
+        ("colchester", "okuma-osp", ("G12.1", "G13.1"), "G18"),
+        ("haas-lathe", "siemens-transmit", ("G17\nG112", "G113"), "G19"),
+    ],
+)
+def test_a_plane_selected_within_a_section_is_noted(
+    source: str, target: str, switches: tuple[str, str], code: str
+) -> None:
+    second = "Y" if source == "haas-lathe" else "C"
+    body = f"G1 X40. {second}0 F200.\n{{}}{second}10.\nX56."
+    head, tail = f"O1\nG21 G98 G40\nT0101\nG0 X60. Z-2. C0\n{switches[0]}\n", f"\n{switches[1]}\nG0 Z50.\nM30\n"
+    for block in ("", f"{code}\n"):
+        outcome = convert(head + body.format(block) + tail, source, target, "1:radius=4")
+        assert any(f"{code} is left out" in note for note in outcome.notes) == bool(block)

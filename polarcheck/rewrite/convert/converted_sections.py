@@ -99,6 +99,11 @@ class _Writer:
             return
         pen, turn = ends.pen(enter, self.style), ends.turn(enter)
         ends.note_x(enter, leave)
+        planes = self.trace.modal.state("plane")[enter:leave]
+        for row in np.flatnonzero((np.diff(planes) != 0) & (planes[1:] != planes[0])).tolist():
+            if (code := f"G{int(planes[row + 1])}") not in self.trace.machine.writing.behind:
+                line = self.lines[enter + row + 1]
+                self.new.notes.append(f"line {line}: {code} is left out: a section stays in the plane of the mode")
         for row in ends.without(enter, leave, pen):
             self._put(row, [])
         targets = self._targets(rows)
