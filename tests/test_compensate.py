@@ -404,7 +404,7 @@ def test_long_paths() -> None:
 @pytest.mark.nightly
 def test_a_path_that_stays_that_of_the_center_is_to_be_decided() -> None:
     """Two squares close; the path between them does not, and has moves to it and away from it."""
-    square = [f"G1 X{x} C{c}" for x, c in ((36, 0), (36, 18), (-36, 18), (-36, -18), (36, -18), (36, 0))]
+    square = [f"G1 X{x}. C{c}." for x, c in ((36, 0), (36, 18), (-36, 18), (-36, -18), (36, -18), (36, 0))]
     open_path = ["X80. C20. F1500", "Z-3. F200", "X60. C10.", "X20. C26.", "X-20. C26.", "X-60. C10.", "X-80. C20."]
     blocks = [*square, "X80. C0", "Z2.", *open_path, "Z2.", "X80. C0", "Z-3.", *square]
     outcome = rewrite(PROGRAM.format(x="80.", blocks="\n".join(blocks)))
