@@ -233,3 +233,39 @@ def test_a_slot_along_x_is_cut_with_the_clamp_on() -> None:
 
 def test_a_run_without_codes_of_a_clamp_is_never_clamped() -> None:
     assert not np.any(tables_of(PROGRAM.format("M210", ""))["spindles"].clamped)
+
+
+#: Turning, then milling with another tool: what stands between, and whether something may turn there.
+TURNED = (
+    "O1\n{turning}T0202\n{before}G98 G0 X60. Z2. C0\nG12.1\nG1 X50. F500\nZ-2.\nG42 X40. F200\n"
+    "C10.\nX-40.\nC-10.\nX40.\nC0\nG40 X50.\nZ2.\nG13.1\nM30\n"
+)
+TURNING = "T0101\nG97 S1200 M3\nG99 G1 X50. Z-20. F0.2\nG0 Z20.\n"
+
+
+@looped(
+    ("turning", "before", "is_told"),
+    [
+        (f"{TURNING}M5\n", "", True),
+        (f"{TURNING}M5\n", "M8\nG97 S2500\n", True),
+        (f"{TURNING}M5\n", "G97 S2500 M13\n", False),
+        (f"{TURNING}M5\n", "S2500 M3\n", False),
+        # What the tool was started with before M5 runs on.
+        (TURNING, "S2500 M13\nM5\n", False),
+        # Nobody knows what ran before.
+        ("M5\n", "", False),
+        ("", "", False),
+        (TURNING, "", False),
+    ],
+)
+@pytest.mark.parametrize("machine", ["fanuc", "siemens-iso"])
+def test_nothing_turns_behind_m5_that_nothing_has_started(
+    turning: str, before: str, is_told: bool, machine: str
+) -> None:
+    text = TURNED.format(turning=turning, before=before)
+    in_inch = text.replace("O1\n", "O1\nG20\n").replace("0.2\n", ".008\n")
+    mirrored = text.replace("G42", "G41").replace("C10.", "C-10.").replace("C-10.\nX40.", "C10.\nX40.")
+    for program in (text, in_inch, mirrored):
+        found = [at for at in said(report_of(program, machine, "2:radius=4", only=SETUP)) if at[1].startswith("live")]
+        line = text[: text.index("X50. F500")].count("\n") + 1 + ("G20\n" in program)
+        assert found == [(line, "live-tool-stopped-in-cut")] * is_told

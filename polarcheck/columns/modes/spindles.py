@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 from msgspec.structs import astuple
 
-from polarcheck.columns.filling import before, happened
+from polarcheck.columns.filling import before, happened, last_row
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Mask, Rows, cached_property
 from polarcheck.geometry.tolerances import ROUNDING
+from polarcheck.program.machines.axis_table import OF_SPINDLE
 from polarcheck.program.machines.code_tables import NO_CODE
 from polarcheck.program.machines.m_codes import OF_EVERY_LATHE
 
@@ -112,6 +113,23 @@ class Spindles:
         from polarcheck.columns.modes.numbered_spindles import unstarted_speeds
 
         return unstarted_speeds(self.trace)
+
+    @cached_property
+    def stopped_by(self) -> Rows:
+        """
+        Per row that of the M5 with which nothing turns any more: it has stopped a spindle, and neither since then nor
+        since the tool was called has a code that may start one been read; -1 where something may turn, and where the
+        profile names codes of the live tool, whose state is known.
+        """
+        trace, codes, blocks = self.trace, self._codes, self.trace.blocks
+        if codes.live_tool_on:
+            return np.full(len(trace), -1)
+        may_start = [*self.unlisted, *np.flatnonzero(trace.run.words.address == OF_SPINDLE)]
+        starts = blocks.codes(*codes.spindle_on, *codes.sub_spindle_on) | trace.run.unknown
+        starts |= blocks.mask_of(trace.run.row[may_start])
+        stops = blocks.codes(*codes.spindle_off) & happened(blocks.codes(*codes.spindle_on), blocks.starts)
+        of_tool = happened(starts, blocks.has("T") | blocks.starts)
+        return np.where(of_tool, -1, last_row(stops, starts | blocks.starts))
 
     @property
     def are_no_live_tool(self) -> Mask:

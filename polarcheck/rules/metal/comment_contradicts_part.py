@@ -147,7 +147,7 @@ def comment_contradicts_part(part_comments: PartComments) -> Hits:
         Z-20.    (expect: comment-contradicts-part)
         G0 X60. Z50.
         M5
-        T0101
+        T0101 S2500 M13
         G0 X60. Z2. C0
         G12.1
         G1 X60. C0 F1500

@@ -34,7 +34,8 @@ def live_tool_stopped_in_cut(
     that has none.
 
     A spindle that has a speed by its number, `S2=2000`, is started by its number, too: `M2=3`. Where nothing in the
-    program starts it, that is a warning: which spindle has the tool is not known to the profile.
+    program starts it, that is a warning: which spindle has the tool is not known to the profile. So it is where M5 has
+    stopped the spindle before, and no code behind that can have started the live tool.
 
     Source: builder's guide to G12.1, sample program.
 
@@ -81,6 +82,24 @@ def live_tool_stopped_in_cut(
         TRAFOOF
         M30
 
+    Bad, tool 8:radius=4:
+
+        T0101
+        G97 S1200 M3
+        G99 G1 X50. Z-20. F0.2
+        G0 Z20. M5
+        T0808
+        G98 G0 X60. C0
+        G12.1
+        G1 G42 X40. F200  (expect: live-tool-stopped-in-cut)
+        C10.
+        X-40.
+        C-10.
+        X40.
+        C0
+        G40 X60. F1500
+        G13.1
+
     Good, set m_codes.live_tool_on=["M33"], set m_codes.live_tool_off=["M5"]:
 
         G98 G0 X60. C0
@@ -98,7 +117,7 @@ def live_tool_stopped_in_cut(
     stopped = mode.first_in_section(path.cuts & ~modal.live_tool & expected)
     # Where the main spindle was started in its place, that is the fault; a tool that ran before is another.
     ran = mode.anywhere_in_section(modal.live_tool & mode.in_polar)
-    never = mode.first_in_section(path.cuts & unstarted & ~modal.live_tool)
+    never = mode.first_in_section(path.cuts & (unstarted | (spindles.stopped_by >= 0)) & ~modal.live_tool)
     return graded(error=stopped, warning=never, follows={"section": ~ran})
 
 
@@ -116,6 +135,9 @@ def details(hit: Hit, spindles: Spindles) -> Details:
             "code_needed": code,
             "or_started_by": f", nothing starts the spindle with {speed} of line {hit.line(run.row[index])}",
         }
+    if (stop := int(spindles.stopped_by[hit.row])) >= 0:
+        started = f", {' or '.join(codes.spindle_off)} of line {hit.line(stop)} has stopped the spindle"
+        return {"code_needed": "the code that starts it", "or_started_by": started}
     return {
         "code_needed": " or ".join(codes.live_tool_on),
         "or_started_by": or_by(hit, spindles, "starts it", "m_codes.live_tool_on"),
