@@ -160,3 +160,27 @@ def test_the_word_that_looks_like_an_angle_is_named(words: str) -> None:
     report = report_of(f"G98\nG12.1\nG1 X10. {words} F100\nG13.1\n")
     angle = next(found for found in report.findings if found.rule == "degrees-in-polar")
     assert angle.message.startswith("C30. is a length of 30 mm")
+
+
+def points(angle: list[float], radius: float, c: list[float]) -> str:
+    """Points of a circle on a control of diameters, with these numbers for C."""
+    x = 2 * radius * np.cos(np.radians(angle))
+    return "\n".join(["G1 F20.", *(f"X{one:.3f} C{two:.3f}" for one, two in zip(x, c, strict=True))])
+
+
+@looped(
+    ("count", "radius", "first", "sense"),
+    [(5, 19, 36, 1), (8, 20.8, 22.5, 1), (8, 20.8, 337.5, -1), (6, 12, 30, 1), (12, 30, 15, 1)],
+)
+@pytest.mark.parametrize("machine", ["fanuc", "doosan"])
+def test_points_whose_x_is_that_of_a_circle_at_their_angles(
+    count: int, radius: float, first: float, sense: int, machine: str
+) -> None:
+    angle = [(first + sense * 360 * index / count) % 360 for index in range(count)]
+    for scale, units in ((1.0, "G21"), (25.4, "G20")):
+        far = f"X{100 / scale:.3f}"
+        program = f"{units} G98 G0 {far} C0\nG12.1\n{{}}\nG1 {far} C0\nG13.1\nM30\n"
+        found = report_of(program.format(points(angle, radius / scale, angle)), machine).findings
+        assert [finding.rule for finding in found if finding.severity != "note"] == ["degrees-in-polar"]
+        lengths = [radius / scale * float(np.sin(np.radians(at))) for at in angle]
+        assert not table(program.format(points(angle, radius / scale, lengths))).series.on_circle.any()

@@ -24,6 +24,8 @@ from polarcheck.program.machines.code_tables import code_set
 _LEAST_COUNT = 3
 #: X of a series stays within this share of its end.
 _BAND = 0.1
+#: X of points of a circle is off by no more than this share of its radius.
+_OFF_CIRCLE = 0.002
 #: What lies as far on the other side of the center, as a share of the end of a series, makes a contour of it.
 _OTHER_SIDE = 0.5
 _FULL_TURN, _PARTS_OF_TURN = 360.0, (180.0, 270.0)
@@ -36,8 +38,9 @@ class Series(msgspec.Struct, frozen=True):
     """
     Moves of the virtual axis in one direction, one after another in a section; an element each.
 
-    rows: all their rows, in order. first: where in these each series begins. count: its moves. end: where it ends, as
-    the number that is written. is_angle: it looks like a turn.
+    rows: all their rows, in order. first: where in these each series begins. count: its moves. end: the farthest that
+    it goes, as the number that is written. is_angle: it looks like a turn. on_circle: read as angles, its numbers and
+    X are points of one circle.
     """
 
     rows: Rows
@@ -45,6 +48,7 @@ class Series(msgspec.Struct, frozen=True):
     count: Rows
     end: Floats
     is_angle: Mask
+    on_circle: Mask
 
     def __len__(self) -> int:
         return len(self.first)
@@ -55,7 +59,7 @@ class Series(msgspec.Struct, frozen=True):
 
 
 _NOTHING = np.zeros(0, np.int64)
-_NO_SERIES = Series(_NOTHING, _NOTHING, _NOTHING, np.zeros(0), np.zeros(0, bool))
+_NO_SERIES = Series(_NOTHING, _NOTHING, _NOTHING, np.zeros(0), *np.zeros((2, 0), bool))
 
 
 def find_series(trace: Trace) -> Series:
@@ -92,7 +96,18 @@ def find_series(trace: Trace) -> Series:
         np.maximum.at(farthest[side], section, value)
     other_side = farthest[(end[last] > 0).astype(np.int64), section[last]]
     is_steady = (count >= _LEAST_COUNT) & (band <= _BAND * size) & (other_side <= _OTHER_SIDE * size)
-    return Series(rows, first, count, end[last], is_turn & from_zero & is_steady)
+    on_circle = (count > _LEAST_COUNT) & _are_on_circle(x, np.radians(end), first, count)
+    on_circle &= np.maximum.reduceat(end, first) - np.minimum.reduceat(end, first) >= _LEAST_END
+    farthest_end = np.where(on_circle, np.maximum.reduceat(np.abs(end), first), end[last])
+    return Series(rows, first, count, farthest_end, is_turn & from_zero & is_steady, on_circle)
+
+
+def _are_on_circle(x: Floats, angle: Floats, first: Rows, count: Rows) -> Mask:
+    """Per series: each X is that of a circle about the center at the angle, but for those at 0, which may begin it."""
+    cosine = np.where(np.abs(angle) > _SAME, np.cos(angle), 0.0)
+    radius = np.add.reduceat(x * cosine, first) / np.maximum(np.add.reduceat(cosine**2, first), _SAME)
+    off = np.maximum.reduceat(np.abs(x - np.repeat(radius, count) * cosine) * (cosine != 0), first)
+    return np.asarray(off <= _OFF_CIRCLE * radius)
 
 
 #: What is written where C turns by an angle [deg].
@@ -138,10 +153,20 @@ class Angles(Columns, frozen=True):
 
     @cached_property
     def in_series(self) -> Mask:
-        """In a series that goes steadily to a turn, or to half of one, while X stays where it is."""
-        if not self.series.is_angle.any():
+        """In a series that goes steadily to a turn, or to half of one, while X stays, or is that of a circle."""
+        is_angle = self.series.is_angle | self.series.on_circle
+        if not is_angle.any():
             return np.zeros(len(self.trace), bool)
-        return np.asarray(self.series.in_rows(self.series.is_angle.astype(np.float64), len(self.trace)) == 1.0)
+        return np.asarray(self.series.in_rows(is_angle.astype(np.float64), len(self.trace)) == 1.0)
+
+    @cached_property
+    def beside_points(self) -> Mask:
+        """In a section with a series of points of a circle: where C is an angle in these, it is one everywhere."""
+        trace, series = self.trace, self.series
+        if not series.on_circle.any():
+            return trace.blocks.nowhere
+        of_points = series.in_rows(series.on_circle.astype(np.float64), len(trace)) == 1.0
+        return np.asarray(trace.mode.anywhere_in_section(of_points))
 
     @cached_property
     def is_positioning(self) -> Mask:
@@ -173,7 +198,8 @@ class Angles(Columns, frozen=True):
         if not may_be_angle.any():
             return repeated(np.float64(np.nan), len(trace))
         rows = np.flatnonzero(trace.mode.anywhere_in_section(may_be_angle))
-        section, virtual = trace.mode.section[rows], np.where(may_be_angle[rows], np.nan, self.virtual_length[rows])
+        section = trace.mode.section[rows]
+        virtual = np.where((may_be_angle | self.beside_points)[rows], np.nan, self.virtual_length[rows])
         farthest = np.zeros(len(trace.mode.sections))
         for column in (np.abs(trace.path.x[rows]), virtual):
             known = np.isfinite(column)

@@ -31,7 +31,8 @@ def degrees_in_polar(blocks: ExecutedBlocks, axes: PlaneAxes, angles: Angles) ->
     turn: it sends the tool 180 mm away from the center. Write the point on the contour, half as large as a diameter, or
     turn C before G12.1. Suspected are 30, 45, 60, 90 and other usual angles more than twice as far out as anything else
     in the section, half as far with G0 beside them, unless the same length stands there with both signs, and C that
-    goes from 0 steadily to 180, 270 or 360 as far out while X stays where it is. A G0 C60. behind G12.1 is the
+    goes from 0 steadily to 180, 270 or 360 as far out while X stays where it is; so is C that rises or falls by half a
+    turn or more while X is that of one circle at these angles. A G0 C60. behind G12.1 is the
     positioning of an approach: write it before G12.1, where C is an angle.
 
     Source: FANUC B-62764EN/01, p. 51; builder's guide to G12.1, layout of the plane.
@@ -67,6 +68,18 @@ def degrees_in_polar(blocks: ExecutedBlocks, axes: PlaneAxes, angles: Angles) ->
         C288.
         C360.
         X50.
+        G13.1
+
+    Bad:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X30. F200
+        C36.              (expect: degrees-in-polar)
+        X-11.459 C108.
+        X-37.082 C180.
+        X-11.459 C252.
+        X30. C324.
         G13.1
 
     Bad:
@@ -112,7 +125,7 @@ def degrees_in_polar(blocks: ExecutedBlocks, axes: PlaneAxes, angles: Angles) ->
         X150.
         G13.1
     """
-    is_angle = angles.in_series | (angles.is_usual & ~angles.has_both_signs)
+    is_angle = angles.in_series | angles.beside_points | (angles.is_usual & ~angles.has_both_signs)
     far_out = (angles.reach > 0) & (angles.farthest > _FAR * angles.reach)
     far_out |= angles.is_positioning & (angles.reach > 0) & (angles.farthest > _FAR_IN_RAPID * angles.reach)
     in_stock = angles.farthest <= angles.trace.lengths.stock_diameter / 2
@@ -123,6 +136,10 @@ def degrees_in_polar(blocks: ExecutedBlocks, axes: PlaneAxes, angles: Angles) ->
 def details(hit: Hit, angles: Angles) -> Details:
     begins, series = "is", angles.series
     if angles.in_series[hit.row]:
-        count = int(series.in_rows(series.count.astype(float), len(angles.trace))[hit.row])
-        begins = f"is one of {count} steps at nearly the same X to"
+        count, on_circle = (
+            int(series.in_rows(column.astype(float), len(angles.trace))[hit.row])
+            for column in (series.count, series.on_circle)
+        )
+        steps = "on a circle, were C an angle, with" if on_circle else "at nearly the same X to"
+        begins = f"is one of {count} steps {steps}"
     return {"farthest": angles.farthest[hit.row], "reach": angles.reach[hit.row], "begins": begins}
