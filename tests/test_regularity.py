@@ -6,6 +6,7 @@ import cmath
 import functools
 import math
 import random
+import re
 from collections.abc import Sequence
 
 import pytest
@@ -168,3 +169,35 @@ def test_a_block_of_increments_that_stands_there_twice_is_told() -> None:
     (slip,) = report_of(program, "fanuc", "1:radius=2", only=["nearly-regular-contour"]).findings
     assert slip.line == 11
     assert "it stands there twice: without it it would be closed" in slip.message
+
+
+#: A bar with a flat by R and by I and J, and a plate with round corners: C as it is meant.
+WITH_FLAT = ["G42 X21. F200", "C12.073", "G3 X-32. C0 R16.", "X21. C-12.073 R16.", "G1 C0"]
+BY_CENTERS = ["G42 X25.2 F100", "C17.421", "G3 X-43. C0 I-12.6 J-17.421", "X25.2 C-17.421 I21.5 J0", "G1 C0"]
+PLATE = [
+    *("G42 X60. F150", "C9.5", "G3 X53. C13. R3.5", "G1 X-53.", "G3 X-60. C9.5 R3.5"),
+    *("G1 C-9.5", "G3 X-53. C-13. R3.5", "G1 X53.", "G3 X60. C-9.5 R3.5", "G1 C0"),
+]
+
+
+@pytest.mark.parametrize(("machine", "scale"), [("fanuc-30i", 1), ("doosan", 10)])
+def test_c_that_is_written_as_a_diameter_is_told_by_its_arcs(machine: str, scale: int) -> None:
+    """The second time in inch, on the other side of the X axis."""
+    exchanged = {"G2": "G3", "G3": "G2", "G42": "G41"}
+    for contour in (WITH_FLAT, BY_CENTERS, PLATE):
+        for factor, is_told in ((1, False), (2, True)):
+            lines = [f"G{22 - min(scale, 2)} G98 T0101", "G0 X90. Z2. C0", "G12.1", "G1 X80. F500", "Z-2.", *contour]
+            text = "\n".join([*lines, "G40 X80.", "Z2.", "G13.1", "M30", ""])
+            if scale > 1:
+                text = re.sub(r"\bG(?:2|3|42)\b", lambda code: exchanged[code[0]], text)
+                text = re.sub(r"([CJ])(-?)(?=[1-9])", lambda word: word[1] + "-" * (not word[2]), text)
+            text = re.sub(
+                r"([XZCRIJF])(-?[\d.]+)",
+                lambda word: f"{word[1]}{float(word[2]) * (factor if word[1] == 'C' else 1) / scale:.4f}",  # noqa: B023
+                text,
+            )
+            found = report_of(text, machine, f"1:radius={3 / scale}").findings
+            told = [
+                (finding.rule, finding.message.partition(";")[2]) for finding in found if finding.severity != "note"
+            ]
+            assert told == [("diameter-radius-mixed", " write C half as large")] * is_told

@@ -9,8 +9,9 @@ import msgspec
 import numpy as np
 
 from polarcheck.columns.contour.plane_loops import PlaneLoop, loops_of, smooth_share
+from polarcheck.columns.path.arcs import with_half_of_c
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Columns, Mask, Rows, cached_property
+from polarcheck.foundation.arrays import Columns, Mask, Points, Rows, cached_property
 from polarcheck.foundation.states import Motion, Side
 from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.regularity.symmetry import Symmetry
@@ -33,13 +34,15 @@ _FEWEST_SECTIONS, _MOST_SECTIONS = 2, 36
 
 class XReading(msgspec.Struct, frozen=True):
     """
-    A section that is regular with another reading of X.
+    A section that is regular with another reading of X, or of C.
 
-    factor: by which X is to be multiplied. becomes: the symmetry that it then has; None where its arcs are tangent.
+    factor: by which X is to be multiplied, or C where of_c says so. becomes: the symmetry that it then has; None where
+    its arcs are tangent.
     """
 
     factor: float
     becomes: Symmetry | None
+    of_c: bool = False
 
 
 class Regularity(Columns, frozen=True):
@@ -82,9 +85,13 @@ class Regularity(Columns, frozen=True):
                 continue
             if symmetry.order > _PLAIN_ORDER and symmetry.corners >= _FEWEST_CORNERS:
                 return XReading(factor, symmetry)
-            if smooth_share(loop, point) == 1 and smooth_share(loop, loop.point) <= _SMOOTH_BY_CHANCE:
+            if self._smooths(loop, point):
                 return XReading(factor, None)
-        return None
+        return XReading(0.5, None, of_c=True) if self._smooths(loop, with_half_of_c(loop.point)) else None
+
+    def _smooths(self, loop: PlaneLoop, point: Points) -> bool:
+        """All arcs of a loop are tangent with other ends, and few are as it is written."""
+        return smooth_share(loop, point) == 1 and smooth_share(loop, loop.point) <= _SMOOTH_BY_CHANCE
 
     @cached_property
     def x_is_misread(self) -> Mask:

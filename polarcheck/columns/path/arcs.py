@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from polarcheck.columns.trace import Trace
@@ -205,22 +207,32 @@ class Arcs(Columns, frozen=True):
         """
         The rows of sections in which no arc fits as this profile reads X, and all fit with X as the other of diameter
         and radius.
+        """
+        return self._is_misread(self._step_otherwise, moves_c=False)
 
-        Arcs by I and J speak, if X changes along them: I is a radius in either reading. One of them must move C, too,
-        since a quarter of a circle without its C fits by chance. Arcs by R fit often, so that they speak only where
-        there are several, and none of them does.
+    @cached_property
+    def c_is_misread(self) -> Mask:
+        """The rows of sections in which no arc fits as this profile reads C, and all fit with C half as large."""
+        path = self.trace.path
+        return self._is_misread(lambda rows: with_half_of_c(path.end[rows] - path.start[rows]), moves_c=True)
+
+    def _is_misread(self, step_otherwise: Callable[[Rows], Points], *, moves_c: bool) -> Mask:
+        """
+        The rows of sections in which no arc fits, and all fit with other steps.
+
+        Arcs by I and J speak, if the misread axis moves along them: I is a radius in either reading. One of them must
+        move both axes, since a quarter of a circle without its C fits by chance. Arcs by R fit often, so that they
+        speak only where there are several, and none of them does. moves_c: it is C that is misread, not X.
         """
         trace = self.trace
         arc = np.flatnonzero(trace.path.is_arc & ~self.is_off_plane & ~trace.axes.makes_corner)
         if not len(arc):
             return np.zeros(len(trace), bool)
         tolerance = trace.machine.arcs.tolerance
-        to_center, step, other_step = (
-            self._to_center(arc),
-            trace.path.end[arc] - trace.path.start[arc],
-            self._step_otherwise(arc),
-        )
-        moves_x, moves_c = np.abs(step.real) > tolerance, np.abs(step.imag) > tolerance
+        to_center, step = self._to_center(arc), trace.path.end[arc] - trace.path.start[arc]
+        other_step = step_otherwise(arc)
+        moves = (np.abs(step.real) > tolerance, np.abs(step.imag) > tolerance)
+        moves_it, moves_other = moves[::-1] if moves_c else moves
         center, radius = (self.start_radius > ROUNDING)[arc], self.by_radius[arc]
         miss = np.abs(np.abs(to_center) - np.abs(step - to_center))
         miss_otherwise = np.abs(np.abs(to_center) - np.abs(other_step - to_center))
@@ -230,9 +242,9 @@ class Arcs(Columns, frozen=True):
             return np.bincount(trace.mode.section[arc[of]], minlength=len(trace.mode.sections))
 
         fails, clearly = center & (miss > tolerance), center & (miss > _CLEARLY * tolerance)
-        by_center = ((count(fails) > 1) | (count(clearly) > 0)) & (count(fails & moves_c) > 0)
-        by_radius = (count(np.abs(step) > limit) > 1) & (count(radius & moves_x & (np.abs(step) <= limit)) == 0)
-        closes = center & moves_x & (miss <= tolerance)
+        by_center = ((count(fails) > 1) | (count(clearly) > 0)) & (count(fails & moves_other) > 0)
+        by_radius = (count(np.abs(step) > limit) > 1) & (count(radius & moves_it & (np.abs(step) <= limit)) == 0)
+        closes = center & moves_it & (miss <= tolerance)
         objects = (center & ~(miss_otherwise <= tolerance)) | (np.abs(other_step) > limit)
         misread = (by_center | by_radius) & (count(closes | objects) == 0)
         return np.asarray((trace.mode.section >= 0) & misread[trace.mode.section])
@@ -249,3 +261,8 @@ class Arcs(Columns, frozen=True):
         had_x = np.append(False, trace.mode.given_in_section(has_x))[:-1]
         x = end.real * factor - start.real * np.where((has_x & ~had_x)[rows], 1.0, factor)
         return np.asarray(x + 1j * (end - start).imag)
+
+
+def with_half_of_c(points: Points) -> Points:
+    """Points or steps whose C is half as large."""
+    return np.asarray(points.real + 0.5j * points.imag)

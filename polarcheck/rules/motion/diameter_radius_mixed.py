@@ -32,7 +32,8 @@ def diameter_radius_mixed(arcs: Arcs, regularity: Regularity) -> Mask:
     arcs miss their circles as this machine reads X, and none does with the other reading: the program is for another
     machine, or polar.x of the profile is wrong. The shape would come out stretched along X. Reported once for the
     section, in place of its arcs. Without arcs that miss, it is reported where the contour becomes a regular polygon of
-    at least five sides with the other reading, or all of its arcs tangent; C may be what is twice as large.
+    at least five sides with the other reading, or all of its arcs tangent; C may be what is twice as large, and is
+    where the arcs show it: it is a radius where X is a diameter.
 
     Source: FANUC B-62764EN/01, p. 51; Mitsubishi M700V programming manual, parameter 8111 and the example on p. 77.
 
@@ -83,6 +84,17 @@ def diameter_radius_mixed(arcs: Arcs, regularity: Regularity) -> Mask:
         G40 X60.
         G13.1
 
+    Bad:
+
+        G98 G0 X60. C0
+        G12.1             (expect: diameter-radius-mixed)
+        G1 X40. C20. F200
+        G3 X20. C40. R10.
+        G1 X-20.
+        G3 X-40. C20. R10.
+        G1 C0
+        G13.1
+
     Good:
 
         G98 G0 X60. C0
@@ -94,13 +106,17 @@ def diameter_radius_mixed(arcs: Arcs, regularity: Regularity) -> Mask:
         G1 C0
         G13.1
     """
-    return arcs.x_is_misread | regularity.x_is_misread
+    return arcs.x_is_misread | arcs.c_is_misread | regularity.x_is_misread
 
 
 def details(hit: Hit, arcs: Arcs, regularity: Regularity, mode: PolarMode, other_machine: OtherMachine) -> Details:
     is_diameter = bool(hit.trace.lengths.x_factor[hit.row] < 1)
     read, meant = ("diameter", "radius") if is_diameter else ("radius", "diameter")
     reading = None if arcs.x_is_misread[hit.row] else regularity.x_readings.get(int(mode.section[hit.row]))
+    if not arcs.x_is_misread[hit.row] and (arcs.c_is_misread[hit.row] or (reading and reading.of_c)):
+        half, is_tangent = f"{hit.virtual} half as large", not arcs.c_is_misread[hit.row]
+        fits = "is tangent as it is written, all are" if is_tangent else "fits as it is written, all do"
+        return {"misfit_of_x": f"no arc of this section {fits} with {half}; write {half}"}
     written_for = other_machine.text or f"; write X as a {read}"
     if reading is None:
         text = f"no arc of this section fits with X read as a {read}, all fit with X as a {meant}"
