@@ -25,6 +25,7 @@ from polarcheck.columns.contour.written_loop import AxisWords, WrittenLoop, writ
 from polarcheck.columns.trace import Trace
 from polarcheck.columns.words.slips import Slip, parts_of, plain_number, slip_of, slips_of
 from polarcheck.foundation.arrays import Mask, Points, Rows, cached_property
+from polarcheck.geometry.regularity.coincidences import Outlines, are_about_axis
 from polarcheck.geometry.regularity.symmetric_corners import each_once, is_lonely, missing_places, regular_polygons
 from polarcheck.geometry.regularity.symmetry import Symmetry
 
@@ -42,6 +43,8 @@ _ODD_OF = 6
 _MOST_TRIALS, _ENDS, _GAPS = 80, 3, 3
 #: Edits that are looked at; how much less they must leave to chance, without and with symmetry; blocks of such a path.
 _MOST_EDITS, _LEAST_GAIN, _GAIN_ALONE, _FEWEST_BLOCKS = 16, 0.5, 3.8, 6
+#: Arcs that are parts of one circle by no chance.
+_FEWEST_ARCS = 2
 #: Pairs of edits that are looked at, and the gain of both together.
 _MOST_PAIRS, _GAIN_OF_TWO = 4, 4.0
 #: The gain of a slip that is often made, and makes all arcs tangent.
@@ -243,10 +246,9 @@ class _Search:
             is_symmetric = self._is_better(symmetry, _Trial(edit.corner, -1, slip, point, edited))
             if best < 0 and is_symmetric and edit.kind not in {"arc", "sense"}:
                 best = len(found) - 1
-            elif (
-                may_be_likely and self.likely is None and (is_symmetric or self._is_clear(likely, symmetry, moves_side))
-            ):
-                self.likely = found[-1][1]
+            elif may_be_likely and self.likely is None:
+                is_clear = is_symmetric or self._is_clear(likely, symmetry, moves_side) or self._rounds(likely, outline)
+                self.likely = found[-1][1] if is_clear else None
         if best < 0:
             return None
         chosen, correction, symmetry = found[best]
@@ -264,6 +266,14 @@ class _Search:
         is_whole = likely.smooths or (likely.closes and self.written is None)
         least = _GAIN_IF_COMMON if likely.smooths and likely.edit.is_common else _GAIN_ALONE
         return is_whole and likely.gain >= least and len(self.loop.turns) >= _FEWEST_BLOCKS
+
+    def _rounds(self, likely: Likely, outline: Outlines) -> bool:
+        """With a word of a point all arcs by R, two or more, are parts of the bar about the center."""
+        arcs, by_center = outline.turns[0] != 0, np.isnan(outline.radius[0])
+        if likely.gain < _GAIN_ALONE or likely.edit.kind != "word" or (arcs & by_center).any():
+            return False
+        now, then = (are_about_axis(one, self.tolerance)[0, arcs] for one in (self._compared.outlines, outline))
+        return bool(len(then) >= _FEWEST_ARCS and then.all() and not now.all())
 
     # ---- one corner ----
 

@@ -88,7 +88,7 @@ def chances_of(outlines: Outlines, tolerance: float) -> Chances:
         chord / np.maximum(length, _NONE),
     )
     bend = np.where(is_circle, 0.0, turns * sweep / 2)
-    kind = np.where(_is_about_axis(outlines, tolerance), 1, 2) * is_arc
+    kind = np.where(are_about_axis(outlines, tolerance), 1, 2) * is_arc
     turn, beside, meets = _turns(direction, bend, moves | is_circle, kind)
     beside_arc, beside_free_arc = beside > 0, beside > 1
     is_corner = meets & (np.abs(turn) >= _TANGENT)
@@ -136,7 +136,7 @@ def _overlaps(point: Points, turns: Rows, tolerance: float) -> Mask:
     return np.asarray(overlaps | crosses)
 
 
-def _is_about_axis(outlines: Outlines, tolerance: float) -> Mask:
+def are_about_axis(outlines: Outlines, tolerance: float) -> Mask:
     """The edges that would be a part of the round bar, if they are arcs: the axis is at 0."""
     point, turns, radius, to_center = outlines
     start, end, size = point[:, :-1], point[:, 1:], np.abs(radius)
