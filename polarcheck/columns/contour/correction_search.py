@@ -268,9 +268,12 @@ class _Search:
         return is_whole and likely.gain >= least and len(self.loop.turns) >= _FEWEST_BLOCKS
 
     def _rounds(self, likely: Likely, outline: Outlines) -> bool:
-        """With a word of a point all arcs by R, two or more, are parts of the bar about the center."""
+        """With a word that does not move all of them alike all arcs by R, two or more, are parts of the bar."""
         arcs, by_center = outline.turns[0] != 0, np.isnan(outline.radius[0])
-        if likely.gain < _GAIN_ALONE or likely.edit.kind != "word" or (arcs & by_center).any():
+        if likely.gain < _GAIN_ALONE or likely.edit.kind != "word" or (arcs & by_center).any() or not arcs.any():
+            return False
+        shift = (outline.point - self._compared.outlines.point)[0, 1:][arcs]
+        if (np.abs(shift - shift[0]) <= self.tolerance).all():
             return False
         now, then = (are_about_axis(one, self.tolerance)[0, arcs] for one in (self._compared.outlines, outline))
         return bool(len(then) >= _FEWEST_ARCS and then.all() and not now.all())
