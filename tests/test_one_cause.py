@@ -825,7 +825,7 @@ def test_one_mistake_that_shows_in_many_places_is_one_finding(program: str, mach
 #: A boss in two depths, with an approach before each; the digits of X in one of them are shifted.
 BOSS = "G42 X40. F200/G3 X-40. C0 R20./X40. C0 R20./G40 G1 X56. F1000"
 TWO_DEPTHS = f"G0 X70. Z2. C0/G12.1/G1 X56. F1000/Z-2./{BOSS}/Z2./{{}}/Z-4./{BOSS}/Z2./G13.1"
-TURNED = "T0202/G99 G97 S800 M3/G0 X46. Z2./G1 Z-12. F.2/G0 X60./Z2./M5/T0101/G98"
+TURNED = "T0202/G99 G97 S800 M3/G0 X46. Z2./G1 Z-12. F.2/G0 X60./Z2./M5/T0101/G97 S3000 M13/G98"
 
 
 @pytest.mark.ci
