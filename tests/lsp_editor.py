@@ -76,7 +76,6 @@ class Editor:
 
     def _serve(self) -> None:
         self.code = main.main(self._options, standalone_mode=False)
-        os.close(self._streams.source)
 
     def _listen(self) -> None:
         with os.fdopen(self._in, "rb") as told:

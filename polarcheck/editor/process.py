@@ -123,7 +123,7 @@ def _log(loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
 
 
 def _feed(source: int, loop: asyncio.AbstractEventLoop, reader: asyncio.StreamReader) -> None:
-    """Read standard input in a thread: on some systems asyncio can wait for sockets only."""
+    """Read standard input in a thread, and close it: on some systems asyncio can wait for sockets only."""
 
     def call(function: Callable[..., None], *arguments: bytes) -> bool:
         try:
@@ -139,6 +139,8 @@ def _feed(source: int, loop: asyncio.AbstractEventLoop, reader: asyncio.StreamRe
             data = b""
         if not data:
             call(reader.feed_eof)
-            return
+            break
         if not call(reader.feed_data, data):
-            return
+            break
+    with contextlib.suppress(OSError):
+        os.close(source)
