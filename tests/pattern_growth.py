@@ -19,6 +19,8 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any, NamedTuple
 
+from polarcheck.foundation import patterns
+
 PACKAGE = Path(__file__).parent.parent / "polarcheck"
 #: Methods that begin at one place; all others try every place of a text.
 ANCHORED = {"match", "fullmatch"}
@@ -58,12 +60,16 @@ def sites() -> list[Site]:
     for path in sorted(PACKAGE.rglob("*.py")):
         name = ".".join(path.relative_to(PACKAGE.parent).with_suffix("").parts).removesuffix(".__init__")
         for node in ast.walk(ast.parse(path.read_text("utf-8"))):
-            if (
-                isinstance(node, ast.Call)
-                and isinstance(node.func, ast.Attribute)
+            if not isinstance(node, ast.Call):
+                continue
+            if isinstance(node.func, ast.Name) and node.func.id == "lazy_pattern":
+                hits.append(Site(name, "compile", node))
+            elif (
+                isinstance(node.func, ast.Attribute)
                 and isinstance(node.func.value, ast.Name)
                 and node.func.value.id == "re"
                 and node.func.attr in _TAKES_PATTERN
+                and name != patterns.__name__
             ):
                 hits.append(Site(name, node.func.attr, node))
     return hits
@@ -91,13 +97,13 @@ def _evaluated(site: Site, module: ModuleType) -> AnyPattern:
     source = ast.Call(site.call.func, [site.call.args[0], *flags], [])
     source.func = ast.Attribute(ast.Name("re", ast.Load()), "compile", ast.Load())
     expression = ast.fix_missing_locations(ast.Expression(source))
-    return eval(compile(expression, site.place, "eval"), dict(vars(module)))  # type: ignore[no-any-return]  # noqa: S307
+    return eval(compile(expression, site.place, "eval"), {"re": re} | vars(module))  # type: ignore[no-any-return]  # noqa: S307
 
 
 def _methods(module: ModuleType, pattern: AnyPattern) -> set[str]:
     """The methods called on a constant of a module; all of them where it is used in another way."""
     # Not by identity: `re` forgets patterns that it has compiled, and makes equal ones again.
-    names = {name for name, value in vars(module).items() if isinstance(value, re.Pattern) and value == pattern}
+    names = {name for name, value in constants(module).items() if value == pattern}
     tree = ast.parse(Path(module.__file__ or "").read_text("utf-8"))
     loads = [node for node in ast.walk(tree) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load)]
     of_name = [node for node in loads if node.id in names]
@@ -111,15 +117,22 @@ def _methods(module: ModuleType, pattern: AnyPattern) -> set[str]:
     return methods_of_others(module.__name__)
 
 
+def constants(module: ModuleType) -> dict[str, AnyPattern]:
+    """The patterns of a module by their names, compiled or not."""
+    values = {name: value for name, value in vars(module).items() if isinstance(value, re.Pattern)}
+    lazy = {name: value for name, value in vars(module).items() if isinstance(value, patterns._Pattern)}
+    return values | {name: re.compile(*value._arguments) for name, value in lazy.items()}  # type: ignore[arg-type]
+
+
 def methods_of_others(module_name: str) -> set[str]:
     """The methods that a module calls on patterns that are no constants of it: on parts of a tuple, on local names."""
     module = importlib.import_module(module_name)
     tree = ast.parse(Path(module.__file__ or "").read_text("utf-8"))
-    constants = {name for name, value in vars(module).items() if isinstance(value, re.Pattern)} | {"re"}
+    known = constants(module).keys() | {"re"}
     called = {
         node.attr
         for node in ast.walk(tree)
-        if isinstance(node, ast.Attribute) and not (isinstance(node.value, ast.Name) and node.value.id in constants)
+        if isinstance(node, ast.Attribute) and not (isinstance(node.value, ast.Name) and node.value.id in known)
     }
     return called & (_TAKES_PATTERN - {"compile", "split"}) or {"search", "fullmatch"}
 

@@ -230,32 +230,6 @@ def test_a_pass_that_is_written_once_more_deeper_sweeps_nothing_else(monkeypatch
 
 
 @pytest.mark.nightly
-@pytest.mark.one_in(3)
-@pytest.mark.parametrize("family", ["pockets", "bosses", "passes"])
-def test_rings_by_what_they_lie_in_or_one_by_one(family: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Parts of many rings are the same, however they are put together."""
-    from polarcheck.geometry.polygons import faces
-
-    found: dict[int, list[Any]] = {}
-    polygons = faces._polygons
-    for few in (0, 10**9):
-
-        def kept(*given: Any, few: int = few) -> Any:
-            result = polygons(*given)
-            found.setdefault(few, []).extend(result)
-            return result
-
-        with monkeypatch.context() as patch:
-            patch.setattr(faces, "_FEW", few)
-            patch.setattr(faces, "_polygons", kept)
-            checked(FAMILIES[family].make(600))
-    assert len(found[0]) == len(found[10**9]) > 0
-    for one, other in zip(found[0], found[10**9], strict=True):
-        assert one.is_valid
-        assert one.symmetric_difference(other).area == pytest.approx(0, abs=1e-6)
-
-
-@pytest.mark.nightly
 def test_loops_that_begin_in_a_row_are_held_together_by_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
     """What they are cut into grows with their number, not with its square."""
     from polarcheck.geometry.polygons import faces

@@ -241,13 +241,13 @@ def _repairs(engine: Engine, finding: Finding) -> Iterator[list[Replace]]:
         yield [in_place_of(run, at[0], needed[0])]
         return
     if trace.axes.motion[row] == Motion.RAPID:
-        yield from ([in_place_of(run, int(word), next(iter(machine.codes("line"))))] for word in codes)
+        yield from ([in_place_of(run, int(word), line)] for word in codes for line in list(machine.codes("line"))[:1])
     sides = trace.blocks.code_indices(*machine.codes("compensation_left"), *machine.codes("compensation_right"))
     for word in at if "compensation" in doubts else ():
         if word in sides:
             other = "compensation_left" if trace.compensation.side[row] == Side.RIGHT else "compensation_right"
             off = trace.blocks.code_indices(*machine.codes("compensation_off"))
-            yield [in_place_of(run, word, next(iter(machine.codes(other))))]
+            yield from ([in_place_of(run, word, code)] for code in list(machine.codes(other))[:1])
             yield from (without(run, int(run.row[code]), [int(code)]) for code in off[run.row[off] > row][:1])
     if "position" in doubts and len(at) == 1:
         address = run.words.address
