@@ -55,6 +55,17 @@ def test_both_signs_in_one_section() -> None:
     assert lines(table("G1 X1.\n"), "has_both_signs") == []
 
 
+def test_a_line_through_the_center_is_no_circle() -> None:
+    """Every X of a circle of radius 0 is 0, whatever C is: so is that of a slot along C."""
+    slot = "G0 X80. C0\nG12.1\nG1 X0.2 F200\nX0 C-120.\nC-60.\nC60.\nC120.\nC180.\nX80.\nG13.1\n"
+    assert not table(slot).series.on_circle.any()
+    assert not any(finding.rule == "degrees-in-polar" for finding in report_of(slot).findings)
+    points = (
+        "G0 X80. C0\nG12.1\nG1 X30. F200\nC36.\nX-11.459 C108.\nX-37.082 C180.\nX-11.459 C252.\nX30. C324.\nG13.1\n"
+    )
+    assert table(points).series.on_circle.any()
+
+
 def test_virtual_length_is_in_mm_and_has_no_sign() -> None:
     angles = table("G20\nG12.1\nC-2.\nX1.\nG13.1\n")
     assert angles.virtual_length[2] == pytest.approx(50.8)

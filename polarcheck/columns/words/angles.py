@@ -107,7 +107,8 @@ def _are_on_circle(x: Floats, angle: Floats, first: Rows, count: Rows) -> Mask:
     cosine = np.where(np.abs(angle) > _SAME, np.cos(angle), 0.0)
     radius = np.add.reduceat(x * cosine, first) / np.maximum(np.add.reduceat(cosine**2, first), _SAME)
     off = np.maximum.reduceat(np.abs(x - np.repeat(radius, count) * cosine) * (cosine != 0), first)
-    return np.asarray(off <= _OFF_CIRCLE * radius)
+    # Not on a line through the center, of which every X is 0.
+    return np.asarray(off < _OFF_CIRCLE * radius)
 
 
 #: What is written where C turns by an angle [deg].
