@@ -20,6 +20,7 @@ from cases import looped
 from click.testing import CliRunner, Result
 from hypothesis import Phase, assume, given, settings
 from hypothesis import strategies as st
+from programs import report_of
 from written_moves import (
     Block,
     Floats,
@@ -430,6 +431,18 @@ def test_block_skip_is_that_of_one_position_of_the_switch() -> None:
 def test_the_reason_is_named(program: str, arguments: tuple[str, ...], expected: str) -> None:
     machine = () if "--machine" in arguments else METHODS["per-minute"]
     assert any(reason.startswith(expected) for reason in reasons(program, *machine, *arguments))
+
+
+def test_a_word_that_cannot_be_read_is_one_reason() -> None:
+    """Where the tool goes with it is not known, too, and no variable says it."""
+    program = f"{HEAD}G1 X60. F100\nX.\nC9.\n{END}"
+    found = reasons(program, *METHODS["per-minute"])
+    assert [reason for reason in found if not reason.startswith("None")] == [
+        "8: X.: no digits after the address [bad-number]"
+    ]
+    doubts = [entry.reason for entry in report_of(program).not_evaluated]
+    position = "the position is not known: X. in line 8 leaves open where the tool goes"
+    assert f"{position}; write numbers that the control can read" in doubts
 
 
 def test_on_the_sub_spindle_only_where_the_profile_says_how_c_turns() -> None:

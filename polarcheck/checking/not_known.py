@@ -144,7 +144,7 @@ def position_not_known(trace: Trace, row: int) -> str:
         # A corner hangs on the block behind it.
         nearest = int(unknown[min(int(np.searchsorted(unknown, row)), len(unknown) - 1)])
         block = block_and_line(trace, nearest)
-        return f"the way is not known: {block} leaves open how the tool goes; {of_variables(trace)}"
+        return f"the way is not known: {block} leaves open how the tool goes; {_of_words(trace, nearest)}"
     open_ends = np.flatnonzero(trace.mode.in_polar & np.isnan(trace.path.end) & ~np.isnan(trace.path.start))
     at_or_before = open_ends[open_ends <= row]
     if not np.isnan(trace.path.end[row]) and (open_ends > row).any():
@@ -153,7 +153,7 @@ def position_not_known(trace: Trace, row: int) -> str:
         row = int(at_or_before[-1])
     if row in open_ends and not trace.run.unknown[row]:
         block = block_and_line(trace, row)
-        return f"the position is not known: {block} leaves open where the tool goes; {of_variables(trace)}"
+        return f"the position is not known: {block} leaves open where the tool goes; {_of_words(trace, row)}"
     lost = np.flatnonzero((trace.run.unknown & (trace.blocks.program == trace.blocks.program[row]))[: row + 1])
     if not len(lost):
         axis = chr(trace.axes.linear_axis[row])
@@ -167,6 +167,12 @@ def position_not_known(trace: Trace, row: int) -> str:
         missing = f"the position is not known: {axis} was not programmed before the polar mode"
         return f"{missing}; {_of_caller(trace, row)}write G0 {axis}... before it"
     return f"the position {_after_unexecuted(trace, int(lost[-1]), f'X and {trace.machine.polar.rotary_address}')}"
+
+
+def _of_words(trace: Trace, row: int) -> str:
+    """The remedy where words of a block have no value."""
+    is_unreadable = trace.blocks.with_words(trace.run.words.is_unreadable)[row]
+    return "write numbers that the control can read" if is_unreadable else of_variables(trace)
 
 
 def _of_caller(trace: Trace, row: int) -> str:

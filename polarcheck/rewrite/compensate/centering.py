@@ -6,7 +6,6 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from polarcheck.checking.not_known import position_not_known
 from polarcheck.columns.path.moves import Moves
 from polarcheck.columns.path.tool_center import ToolCenter
 from polarcheck.columns.trace import Trace
@@ -20,7 +19,7 @@ from polarcheck.rewrite.writing.new_blocks import NewBlock, edit_before, edits_o
 from polarcheck.rewrite.writing.original import Original
 from polarcheck.rewrite.writing.outcome import Figure, Outcome, RefusedError, radius_not_known
 from polarcheck.rewrite.writing.reading_back import read_back_on_part, require_equal
-from polarcheck.rewrite.writing.refused_sections import Check, refusals_in_sections
+from polarcheck.rewrite.writing.refused_sections import Check, refusals_in_sections, unknown_positions
 from polarcheck.rewrite.writing.style_of import style_of
 from polarcheck.rules.wording.offsets import called_tool
 
@@ -82,13 +81,14 @@ def _require_path(original: Original, moves: Moves, compensated: Mask) -> None:
     is_unknown = trace.compensation.compensates & trace.path.travels & np.isnan(trace.compensation.radius)
     if refusals := list(refusals_in_sections(trace, [(is_unknown, radius_not_known)])):
         raise RefusedError(refusals[:1])
+    faults = original.faults(*_OF_COMPENSATION)
     of_contour = trace.blocks.mask_of(moves.row[moves.arc_share != 1])
     checks: list[Check] = [
-        (trace.blocks.mask_of(moves.row[~moves.known]) & compensated, position_not_known),
+        unknown_positions(trace, trace.blocks.mask_of(moves.row[~moves.known]) & compensated, faults),
         (trace.blocks.mask_of(moves.row[moves.allowance != 0]), "an infeed cycle makes the passes"),
         (of_contour & compensated, "F along this arc is that of the contour, not of the tool center: switch that off"),
     ]
-    if refusals := [*original.faults(*_OF_COMPENSATION), *refusals_in_sections(trace, checks)]:
+    if refusals := [*faults, *refusals_in_sections(trace, checks)]:
         raise RefusedError(sorted(refusals, key=lambda refusal: refusal.line))
 
 

@@ -7,7 +7,6 @@ from collections.abc import Iterator
 import msgspec
 import numpy as np
 
-from polarcheck.checking.not_known import position_not_known
 from polarcheck.columns.path.tool_center import ToolCenter
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.states import FeedMode, Motion, Side
@@ -18,6 +17,7 @@ from polarcheck.rewrite.writing.refused_sections import (
     checks_of_sections,
     never_left,
     refusals_in_sections,
+    unknown_positions,
 )
 from polarcheck.rewrite.writing.unknown_moves import UnknownMoves
 from polarcheck.rules.editing import written_word
@@ -63,17 +63,17 @@ def stretches(trace: Trace) -> list[Stretch]:
     return result
 
 
-def refusals(tables: Tables, sections: list[Stretch]) -> list[Refusal]:
-    """Return the reasons why sections cannot be unrolled, each once per line."""
+def refusals(tables: Tables, sections: list[Stretch], faults: list[Refusal]) -> list[Refusal]:
+    """Return the reasons why sections cannot be unrolled, each once per line. faults: those that are told already."""
     trace: Trace = tables["trace"]
-    reasons = list(refusals_in_sections(trace, _checks(tables)))
+    reasons = list(refusals_in_sections(trace, _checks(tables, faults)))
     is_open = never_left(trace)
     for section in sections:
         reasons += () if is_open[section.number] else _of_section(trace, section)
     return list(dict.fromkeys(sorted(reasons, key=lambda reason: reason.line)))
 
 
-def _checks(tables: Tables) -> list[Check]:
+def _checks(tables: Tables, faults: list[Refusal]) -> list[Check]:
     """Return the rows that cannot be unrolled, with the reasons."""
     trace: Trace = tables["trace"]
     center: ToolCenter = tables["tool_center"]
@@ -112,7 +112,7 @@ def _checks(tables: Tables) -> list[Check]:
         (center.inside_arc_too_small, "the cutter does not fit into this arc"),
         ((trace.compensation.side != Side.OFF) & mode.enters, "cutter compensation is in force before the mode"),
         (without_radius, radius_not_known),
-        (unknown, position_not_known),
+        unknown_positions(trace, unknown, faults),
         ((without_feed | alone) & ~per_minute, "F is not per minute, so that the speed of the tool is not known"),
         (without_feed | alone, "F is missing"),
     ]  # fmt: skip

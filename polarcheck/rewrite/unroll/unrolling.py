@@ -51,7 +51,8 @@ def unrolled(original: Original, options: Unrolling) -> Outcome:
     if not sections:
         raise RefusedError([Refusal(0, "there is no polar section in it")])
     not_judged = (Refusal(0, entry.reason) for entry in unexecuted(original.tables) if entry.matters)
-    if reasons := [*original.faults(), *refusals(original.tables, sections), *not_judged]:
+    faults = original.faults()
+    if reasons := [*faults, *refusals(original.tables, sections, faults), *not_judged]:
         raise RefusedError(reasons)
     feed = unrolled_feeds.chosen(trace, options.feed)
     center: ToolCenter = original.tables["tool_center"]

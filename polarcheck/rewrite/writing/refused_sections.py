@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 
 import numpy as np
 
+from polarcheck.checking.not_known import position_not_known
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Mask
 from polarcheck.rewrite.writing.outcome import Refusal, refusal_at
@@ -19,6 +20,18 @@ def refusals_in_sections(trace: Trace, checks: Iterable[Check]) -> Iterator[Refu
     for hits, text in checks:
         for row in np.flatnonzero(trace.mode.first_in_section(hits)).tolist():
             yield refusal_at(trace, row, text if isinstance(text, str) else text(trace, row))
+
+
+def unknown_positions(trace: Trace, rows: Mask, faults: Sequence[Refusal]) -> Check:
+    """
+    Return the rows whose position is not known.
+
+    faults: that are told beside them: among them are those of words that the control cannot read, which leave the rest
+    of their sections open.
+    """
+    if faults:
+        rows = rows & ~trace.mode.anywhere_in_section(trace.blocks.with_words(trace.run.words.is_unreadable))
+    return rows, position_not_known
 
 
 def never_left(trace: Trace) -> Mask:
