@@ -201,3 +201,31 @@ def test_c_that_is_written_as_a_diameter_is_told_by_its_arcs(machine: str, scale
                 (finding.rule, finding.message.partition(";")[2]) for finding in found if finding.severity != "note"
             ]
             assert told == [("diameter-radius-mixed", " write C half as large")] * is_told
+
+
+#: A free shape by arcs with R, with C in degrees.
+IN_DEGREES = (
+    "G41 X38.649 C-0.228 F120.\nC344.22\nG2 X36.45 C336.279 R3.5\nG1 X2.599 C273.104\nG2 X-4.958 C264.16 R3.\n"
+    "G1 X-42.462 C207.621\nG2 X-45.859 C198.304 R4.\nG1 X-43.478 C151.838\nG2 X-39.872 C143.526 R4.\n"
+    "G1 X-8.709 C99.908\nG2 X-2.668 C93.09 R2.5\nG1 X35.935 C23.251\nG2 X38.649 C13.72 R4.\nG1 C359.324\n"
+)
+
+
+@pytest.mark.parametrize("mirrored", [False, True])
+def test_arcs_that_fit_with_half_of_c_by_chance_say_nothing_of_it(mirrored: bool) -> None:
+    """Steps of angles are about as long as these R; halved, no arc would go on smoothly from the lines beside it."""
+    contour = IN_DEGREES
+    if mirrored:
+        contour = re.sub(r"C(-?)(?=\d)", lambda word: "C" + "-" * (not word[1]), contour)
+        contour = contour.replace("G2", "G3").replace("G41", "G42")
+    text = f"G21 G98 T0101\nG0 X77. Z2. C0\nG12.1\nG1 X70. F500\nZ-3.\n{contour}G40 X70. F800.\nZ2.\nG13.1\nM30\n"
+    rules = [finding.rule for finding in report_of(text, "gsk-988", "1:radius=3").findings]
+    assert "arc-radius-too-small" in rules
+    assert "diameter-radius-mixed" not in rules
+
+
+@pytest.mark.parametrize("radius", ["0", "#500", "-3.5"])
+def test_arcs_of_any_r_are_compared_with_half_of_c(radius: str) -> None:
+    contour = IN_DEGREES.replace("R4.", f"R{radius}")
+    text = f"G21 G98 T0101\nG0 X77. Z2. C0\nG12.1\nG1 X70. F500\n{contour}G40 X70.\nG13.1\n"
+    assert "diameter-radius-mixed" not in [finding.rule for finding in report_of(text).findings]

@@ -16,9 +16,11 @@ from polarcheck.foundation.arrays import (
     cached_property,
     column_at,
     is_among,
+    mask_at,
     repeated,
 )
 from polarcheck.foundation.states import Motion
+from polarcheck.geometry.plane import angle_between
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.program.reading.translation import spans
 
@@ -26,6 +28,8 @@ from polarcheck.program.reading.translation import spans
 _CLEARLY = 10
 #: An arc whose center is nearer to the center of C than this is about it [mm].
 _ABOUT_CENTER = 0.02
+#: A turn that is no corner [rad].
+_SMOOTH = 0.02
 #: From so many arcs on it is no single word that is wrong.
 _SEVERAL = 3
 
@@ -222,7 +226,8 @@ class Arcs(Columns, frozen=True):
 
         Arcs by I and J speak, if the misread axis moves along them: I is a radius in either reading. One of them must
         move both axes, since a quarter of a circle without its C fits by chance. Arcs by R fit often, so that they
-        speak only where there are several, and none of them does. moves_c: it is C that is misread, not X.
+        speak only where there are several, and none of them does; of C where each would have a smooth end, since angles
+        on a shape are far apart, too. moves_c: it is C that is misread, not X.
         """
         trace = self.trace
         arc = np.flatnonzero(trace.path.is_arc & ~self.is_off_plane & ~trace.axes.makes_corner)
@@ -246,8 +251,23 @@ class Arcs(Columns, frozen=True):
         by_radius = (count(np.abs(step) > limit) > 1) & (count(radius & moves_it & (np.abs(step) <= limit)) == 0)
         closes = center & moves_it & (miss <= tolerance)
         objects = (center & ~(miss_otherwise <= tolerance)) | (np.abs(other_step) > limit)
+        if moves_c and (by_radius & ~by_center).any():
+            objects |= radius & ~self._have_smooth_end(arc, step_otherwise)
         misread = (by_center | by_radius) & (count(closes | objects) == 0)
         return np.asarray((trace.mode.section >= 0) & misread[trace.mode.section])
+
+    def _have_smooth_end(self, arcs: Rows, step_of: Callable[[Rows], Points]) -> Mask:
+        """Arcs by R that go on smoothly from the move before them, or into the one behind, were their steps others."""
+        trace = self.trace
+        row = np.flatnonzero(trace.path.travels)
+        step, kind, radius = step_of(row), trace.axes.motion[row], np.where(self.by_radius, self.radius, np.inf)[row]
+        sense = np.where(kind == Motion.CCW, 1.0, -1.0)
+        half = sense * np.arcsin(np.minimum(np.abs(step) / np.maximum(np.abs(2 * radius), ROUNDING), 1.0))
+        half = np.where(radius < 0, sense * np.pi - half, half)
+        leaving, arriving = step * np.exp(-1j * half), step * np.exp(1j * half)
+        turn = np.abs(angle_between(arriving[:-1], leaving[1:]))
+        is_smooth = (turn <= _SMOOTH) & (np.diff(trace.mode.section[row]) == 0)
+        return mask_at(len(trace), row[np.append(is_smooth, False) | np.append(False, is_smooth)])[arcs]
 
     def _step_otherwise(self, rows: Rows) -> Points:
         """From start to end of some rows [mm], were X the other of diameter and radius; X before G12.1 stays."""
