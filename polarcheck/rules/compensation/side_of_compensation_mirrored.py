@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     at=("compensation_left", "compensation_right"),
     once="program",
     doubts=(("compensation", "compensation"),),
-    follows={"section": ("degrees-in-polar", "diameter-radius-mixed")},
+    follows={"section": ("degrees-in-polar",)},
 )
 def side_of_compensation_mirrored(mirrored: Mirrored) -> Mask:
     """

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     at=("F", "feed_per_minute", "line", "arc_clockwise", "arc_counterclockwise"),
     once="program",
     subject="size",
-    follows={"block": ("feed-lost-from-per-revolution",), "program": ("number-without-point",)},
+    follows={"program": ("number-without-point",)},
     doubts=(("rate", "section"),),
 )
 def feed_implausible(feeds: Feeds, unpointed: Unpointed) -> Hits:

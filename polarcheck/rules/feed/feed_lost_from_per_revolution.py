@@ -15,7 +15,6 @@ if TYPE_CHECKING:
     ERROR,
     "no F in the mode: the feed per revolution before G12.1 is not taken over",
     at=("line", "arc_clockwise", "arc_counterclockwise"),
-    follows={"block": ("feed-missing-in-polar",)},
 )
 def feed_lost_from_per_revolution(mode: PolarMode, path: ProgrammedPath, feeds: Feeds) -> Mask:
     """
@@ -65,4 +64,4 @@ def feed_lost_from_per_revolution(mode: PolarMode, path: ProgrammedPath, feeds: 
         C10.
         G13.1
     """
-    return mode.first_in_section(path.moves_at_feed & feeds.lost)
+    return mode.first_in_section(path.moves_at_feed & feeds.lost & ~feeds.missing)

@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     values=("feed_per_revolution",),
     at=("feed_per_revolution", "line", "arc_clockwise", "arc_counterclockwise"),
     once="program",
-    follows={"block": ("feed-missing-in-polar",)},
 )
 def feed_per_revolution_in_polar(mode: PolarMode, path: ProgrammedPath, feedrate: Feedrate, feeds: Feeds) -> Hits:
     """
@@ -66,14 +65,14 @@ def feed_per_revolution_in_polar(mode: PolarMode, path: ProgrammedPath, feedrate
         G13.1
         G99 G0 X60.
     """
-    per_revolution = path.cuts & (feedrate.feed_mode == FeedMode.PER_REVOLUTION)
+    per_revolution = path.cuts & (feedrate.feed_mode == FeedMode.PER_REVOLUTION) & ~feeds.missing
     high = mode.first_in_section(per_revolution & feeds.is_too_high_per_revolution)
     first = mode.first_in_section(per_revolution) & ~mode.anywhere_in_section(high)
     return graded(warning=high, note=first, worst=high.astype(float))
 
 
 def details(hit: Hit, mode: PolarMode, path: ProgrammedPath, feedrate: Feedrate, feeds: Feeds) -> Details:
-    per_revolution = path.cuts & (feedrate.feed_mode == FeedMode.PER_REVOLUTION)
+    per_revolution = path.cuts & (feedrate.feed_mode == FeedMode.PER_REVOLUTION) & ~feeds.missing
     if feeds.is_too_high_per_revolution[hit.row]:
         per_revolution &= feeds.is_too_high_per_revolution
     feed = hit.trace.feedrate.feed_number[hit.row]

@@ -23,7 +23,6 @@ _LEAST_BLOCKS = 2
     once="section",
     subject="",
     doubts=(("compensation", "section"), ("metal", "section"), ("size", "section")),
-    follows={"section": ("wrong-axis-address-in-polar",)},
 )
 def compensation_without_contour(misplaced_ramps: MisplacedRamps) -> Mask:
     """

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     once="section",
     subject="stock",
     doubts=(("metal", "section"),),
-    follows={"section": (*OUT_OF_PLACE, "contour-at-two-depths", "z-with-plane-axis", "helical-arc-in-polar")},
+    follows={"section": (*OUT_OF_PLACE, "contour-at-two-depths")},
 )
 def cut_in_air(air_cuts: AirCuts) -> Hits:
     """

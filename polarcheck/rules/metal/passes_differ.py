@@ -25,7 +25,7 @@ _APART = 1e-3
     follows={
         "block": ("arc-sweep-above-limit",),
         "twin": (*FAULTS_OF_CONTOUR, "contour-already-cut-into", "rapid-through-stock", "side-repeated-in-offset-mode"),
-        "motion": ("rapid-along-contour", "rapid-in-polar"),
+        "motion": ("rapid-along-contour",),
     },
     is_symptom=True,
 )

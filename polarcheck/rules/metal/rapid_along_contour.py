@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     gouges=True,
     once="section",
     subject="",
-    follows={"section": ("rapid-in-polar", "degrees-in-polar")},
+    follows={"section": ("rapid-in-polar",)},
     doubts=(("rapid", "motion"),),
 )
 def rapid_along_contour(rapid_contours: RapidContours, mode: PolarMode, machine: Machine) -> Hits:

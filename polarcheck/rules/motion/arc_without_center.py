@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     once="motion",
     subject="",
     doubts=END_IN_DOUBT,
-    follows={"block": ("arc-off-polar-plane", "side-repeated-in-offset-mode")},
+    follows={"block": ("side-repeated-in-offset-mode",)},
     is_symptom=True,
     only_with=(ARC,),
 )
@@ -60,7 +60,7 @@ def arc_without_center(path: ProgrammedPath, arcs: Arcs) -> Mask:
         G1 X-20.
         G13.1
     """
-    has_center = arcs.by_radius | arcs.by_center | arcs.has_word_of_other_plane
+    has_center = arcs.by_radius | arcs.by_center | arcs.has_word_of_other_plane | arcs.is_off_plane
     return path.is_arc & ~has_center & ~arcs.ends_at_start & ~path.shape_is_unknown
 
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     values=("word",),
     subject="",
     doubts=NO_SUCH_ARC,
-    follows={"block": ("arc-off-polar-plane",), "section": ("linear-axis-never-programmed",)},
+    follows={"section": ("linear-axis-never-programmed",)},
     only_with=(ARC,),
 )
 def arc_word_of_other_plane(axes: PlaneAxes, path: ProgrammedPath, arcs: Arcs) -> Hits:
@@ -57,7 +57,7 @@ def arc_word_of_other_plane(axes: PlaneAxes, path: ProgrammedPath, arcs: Arcs) -
         G1 X60.
         G13.1
     """
-    return Hits(path.is_arc & arcs.has_word_of_other_plane, at=axes.other_center_words)
+    return Hits(path.is_arc & arcs.has_word_of_other_plane & ~arcs.is_off_plane, at=axes.other_center_words)
 
 
 def details(hit: Hit, axes: PlaneAxes) -> Details:

@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     "{code} ends a polar mode that was never entered: {turned} as outside the mode, not on the contour; {instead}",
     values=("code", "other_line"),
     at=("off",),
-    follows={"block": ("polar-switched-in-offset-mode",)},
     subject="mode",
 )
 def polar_never_entered(axes: PlaneAxes, procedure: Procedure, switch_slips: SwitchSlips) -> Hits:

@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     worse=("x:x_needed",),
     at=("on",),
     subject="reach",
-    follows={"section": ("nearly-regular-contour",)},
     doubts=(("compensation", "start-up ahead"), ("move", "X before"), ("metal", "block"), ("rapid", "tool call")),
     is_symptom=True,
 )
