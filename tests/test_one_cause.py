@@ -988,3 +988,95 @@ def test_a_wrong_word_in_an_arc_that_ends_right_explains_no_other_arc(scale: flo
     )
     found = [(one.line, one.rule) for one in report_of(program).findings if one.severity == "error"]
     assert found == [(6, "arc-word-of-other-plane"), (8, "arc-end-off-circle")]
+
+
+#: One mistake that two rules find, each in its own way: the program, its machine, the finding, what is listed under it.
+FOUND_TWICE = [
+    (
+        "G40 X80. and its G1 are missing behind an arc",
+        "O1|T0101|G98 G0 X60. Z2. C0|G12.1|G1 Z-5. F300|G42 X30. F200|G3 X-30. C0 R15.|X30. C0 R15.|Z-8.|"
+        "G42 X30. C0|G3 X-30. C0 R15.|X30. C0 R15.|G1 G40 X60.|Z2.|G13.1|M30",
+        "fanuc",
+        "side-repeated-in-offset-mode",
+        ["arc-off-polar-plane"],
+    ),
+    (
+        "G41 for G40",
+        f"O1|T0101|G98|{HEXAGON}|M30".replace("G40", "G41"),
+        "fanuc",
+        "side-changed-in-offset-mode",
+        ["overcut", "polar-switched-in-offset-mode"],
+    ),
+    (
+        "K of a turned arc",
+        "O1|T0101|G98 G0 X60. Z2. C0|G12.1|G1 Z-5. F300|X40. F200|G3 X30. Z-10. I0 K-5.|G1 X60.|Z2.|G13.1|M30",
+        "fanuc",
+        "arc-off-polar-plane",
+        ["arc-center-on-path", "arc-end-off-circle"],
+    ),
+    (
+        "Z in one arc of a closed contour",
+        "O1|T0101|G98 G0 X60. Z2. C0|G12.1|G1 Z-5. F300|G42 X40. F200|C20.|X-40.|G3 X-40. C-20. Z-8. R30.|G1 X40.|C0|"
+        "G40 X60.|Z2.|G13.1|M30",
+        "fanuc",
+        "helical-arc-in-polar",
+        ["contour-at-two-depths"],
+    ),
+    (
+        "the end of the file is lost",
+        "O1|T0101|#1=0|WHILE[#1 LT 3]DO1|G0 X60.",
+        "fanuc",
+        "program-end-missing",
+        ["loop-unbalanced"],
+    ),
+    ("IF of another control", "O1|IF R1==1|G0 X5.|ELSE|G0 X6.|ENDIF|M30", "fanuc", "macro-syntax", ["bad-number"] * 2),
+    (
+        "no F",
+        "O1|T0101|G99 G0 X60. Z2. C0|G12.1|G1 Z-5.|X40.|C10.|X60.|G13.1|M30",
+        "fanuc",
+        "feed-missing-in-polar",
+        [],
+    ),
+    (
+        "T behind G42",
+        f"O1|G98|{HEXAGON}|M30".replace("X30. F200", "X30. F200|T0101"),
+        "fanuc",
+        "offset-changed-in-polar",
+        ["offset-number-missing"],
+    ),
+    (
+        "G13.1 is missing before M5",
+        f"O1|T0101|G98|{HEXAGON}|M5|G28 U0|M30".replace("|G13.1", "").replace("/G13.1", ""),
+        "fanuc",
+        "polar-never-left",
+        ["spindle-code-in-polar"],
+    ),
+    (
+        "an arc without G12.1",
+        "O1|T0101|G98 G0 X60. Z2. C0|G1 Z-5. F300|G42 X30. F200|C10.|G3 X-30. C12. R15.|G1 C-10.|G3 X30. C-12. R15.|"
+        "G1 C0|G40 X60.|Z2.|M30",
+        "fanuc",
+        "arc-outside-polar-mode",
+        ["contour-outside-polar-mode"],
+    ),
+    (
+        "a sign in the last point, which an infeed cycle wants closed",
+        f"O1|T0101|G98|{HEXAGON}|M30".replace("G12.1", "G12.1 E2.").replace("X30. C-8.660/C0", "X30. C8.66"),
+        "gsk-988",
+        "contour-open-with-infeed",
+        ["nearly-regular-contour"],
+    ),
+]
+
+
+@pytest.mark.ci
+@pytest.mark.parametrize(
+    ("program", "machine", "cause", "following"), [pytest.param(*rest, id=name) for name, *rest in FOUND_TWICE]
+)
+def test_a_mistake_that_two_rules_find_is_told_once(
+    program: str, machine: str, cause: str, following: list[str]
+) -> None:
+    report = report_of(re.sub("[|/]", "\n", program) + "\n", machine, "1:radius=4")
+    assert [(found.rule, sorted(one.rule for one in found.follows)) for found in serious(report)] == [
+        (cause, following)
+    ]

@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     gouges=True,
     once="loop",
     doubts=(("metal", "narrow loop"),),
-    follows={"loop": ("start-up-shorter-than-radius", "cancel-shorter-than-radius")},
     is_symptom=True,
 )
 def no_offset_intersection(tool_center: ToolCenter, ramps: Ramps) -> Mask:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     once="loop",
     subject="outline",
     doubts=(("compensation", "loop"),),
-    follows={"loop": (*OUT_OF_PLACE, "contour-crosses-itself")},
+    follows={"loop": OUT_OF_PLACE},
 )
 def incremental_contour_not_closed(increments: Increments) -> Hits:
     """

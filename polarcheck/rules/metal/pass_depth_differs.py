@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     "the pass at Z{depth} {out_of_step}",
     values=("z", "z_needed"),
     worse=("z:z_needed",),
-    follows={"section": ("cut-in-air", "approach-inside-stock")},
+    follows={"section": ("cut-in-air",)},
 )
 def pass_depth_differs(pass_depths: PassDepths) -> Mask:
     """

@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     values=("stock", "plane_x", "plane_c"),
     subject="metal",
     once="section",
-    follows={"section": ("rapid-through-stock",)},
     is_symptom=True,
 )
 def pass_ends_inside_bar(pass_ends: PassEnds) -> Mask:

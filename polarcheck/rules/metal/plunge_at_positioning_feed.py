@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     subject="stock",
     follows={
         "section": OUT_OF_PLACE,
-        "block": ("uncompensated-cut-into-part",),
         "start-up ahead": ("start-up-sweeps-contour",),
     },
 )

@@ -6,7 +6,6 @@ from polarcheck.rules.rule import ERROR, Hits, graded, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.metal.workpiece import Workpiece
-    from polarcheck.columns.modes.procedure import Procedure
     from polarcheck.rules.hit import Details, Hit
 
 
@@ -18,14 +17,10 @@ if TYPE_CHECKING:
     gouges=True,
     once="tool call",
     subject="rapid",
-    follows={
-        "block": ("rapid-plunge-into-stock",),
-        "tool call": ("cut-in-air",),
-        "program": ("polar-never-entered",),
-    },
+    follows={"block": ("rapid-plunge-into-stock",), "tool call": ("cut-in-air",)},
     is_symptom=True,
 )
-def rapid_through_part(workpiece: Workpiece, procedure: Procedure) -> Hits:
+def rapid_through_part(workpiece: Workpiece) -> Hits:
     """
     Positioning through the finished part.
 
@@ -98,13 +93,7 @@ def rapid_through_part(workpiece: Workpiece, procedure: Procedure) -> Hits:
         G0 C120.
     """
     error = workpiece.hits_part & workpiece.is_rapid & ~workpiece.may_miss_part
-    goes_on = procedure.contour_goes_on_behind >= 0
-    return graded(
-        error=error,
-        warning=workpiece.hits_part,
-        undecided=workpiece.may_miss_part,
-        follows={"program": goes_on},
-    )
+    return graded(error=error, warning=workpiece.hits_part, undecided=workpiece.may_miss_part)
 
 
 def details(hit: Hit, workpiece: Workpiece) -> Details:
