@@ -1066,6 +1066,39 @@ FOUND_TWICE = [
         "contour-open-with-infeed",
         ["nearly-regular-contour"],
     ),
+    (
+        "C is missing, and the code that engages it",
+        TURNING_CENTER.replace("/M35", "").replace("/G28 H0", "") + f"|{HEXAGON}|M34|M30".replace("Z2. C0", "Z2."),
+        "turning-center",
+        "c-axis-not-engaged",
+        ["c-angle-unknown-at-entry"],
+    ),
+    (
+        "X is positioned by G0 behind G12.1",
+        "O1|G28 U0 W0|T0101|G98 G0 C0 Z2.|G12.1|X70. F1500|G1 " + HEXAGON.partition("G1 ")[2] + "|M30",
+        "fanuc",
+        "rapid-in-polar",
+        ["x-unknown-at-entry"],
+    ),
+    (
+        "a sign in one of four depths",
+        "O1|T0101|G98 G0 X70. Z2. C0|G12.1|G1 X70. F1500|"
+        + "|".join(
+            f"Z{z} F1500|G42" + HEXAGON.partition("G42")[2].partition("/Z2.")[0] for z in ("-2.", "4.", "-6.", "-8.")
+        )
+        + "|Z2.|G13.1|G0 X100. Z50.|M30",
+        "fanuc",
+        "cut-in-air",
+        ["pass-depth-differs"],
+    ),
+    (
+        "X as radii, the arcs by R and by I and J",
+        "G98 G0 X60. C0|G12.1|G1 X20. C0 F200|C10.|G3 X10. C20. I-10. J0|G1 X-10.|G3 X-20. C10. R10.|G1 C-10.|"
+        "G3 X-10. C-20. I10. J0|G1 X10.|G3 X20. C-10. R5.|G1 C0|X60.|G13.1",
+        "fanuc",
+        "arc-radius-too-small",
+        ["arc-end-off-circle"],
+    ),
 ]
 
 

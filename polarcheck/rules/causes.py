@@ -37,7 +37,7 @@ SUBJECT_OF_TABLE: Final = {
 #: subject rests on. A move is judged by itself: travel, a ramp on an arc. The speed of C is that of a move, and a rate
 #: follows from it; a shape and an outline are of a contour. A size is of a bar, a cutter or F, a stock what a bar
 #: loses, a rapid a move through it, a reach how far the cuts of a section go: their rules name them, as do those of
-#: words and of where the mode is on.
+#: words and of where the mode is on. An offset is in force from one block of a section to another.
 SUBJECTS: Final = {
     "arc": ("block", ("position", "arc")),
     "move": ("block", ("position", "arc", "move")),
@@ -55,10 +55,11 @@ SUBJECTS: Final = {
     "size": ("program", ("size", "word")),
     "word": ("block", ("word",)),
     "mode": ("program", ("mode",)),
+    "offset": ("section", ("offset",)),
 }
 #: All that may be doubtful, and what of it leaves the part as it is.
 DOUBTFUL: Final = frozenset(what for _, rests_on in SUBJECTS.values() for what in rests_on)
-BESIDE_PART: Final = frozenset({"speed", "rate", "rapid", "word", "mode"})
+BESIDE_PART: Final = frozenset({"speed", "rate", "rapid", "word", "mode", "offset"})
 
 #: X or the second axis is another than the one that the section was written for, or there is none.
 SECTION_READ_OTHERWISE: Final = (("position", "section"),)
@@ -108,6 +109,7 @@ FAULTS_OF_CONTOUR: Final = (
     "contour-not-closed",
     "c-feed-above-limit",
     "circle-center-doubled",
+    "contour-already-cut-into",
     "full-circle-by-radius",
     "incremental-contour-not-closed",
     "inside-arc-smaller-than-radius",
@@ -119,7 +121,9 @@ FAULTS_OF_CONTOUR: Final = (
     "number-without-point",
     "overcut",
     "path-through-center",
+    "rapid-through-stock",
     "side-of-compensation-mirrored",
+    "side-repeated-in-offset-mode",
     "slot-narrower-than-cutter",
     "start-up-sweeps-contour",
     "uncompensated-cut-into-part",

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     gouges=True,
     at=("compensation_left", "compensation_right"),
     subject="",
-    doubts=(("compensation", UNIT), ("move", "loop")),
+    doubts=(("compensation", UNIT), ("move", "loop"), ("offset", "section")),
 )
 def side_changed_in_offset_mode(compensation: CutterCompensation, ramps: Ramps) -> Mask:
     """

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     at=("compensation_left", "compensation_right"),
     once="section",
     subject="",
-    doubts=(("compensation", "section"),),
+    doubts=(("compensation", "section"), ("offset", "section")),
 )
 def side_repeated_in_offset_mode(compensation: CutterCompensation, ramps: Ramps) -> Mask:
     """

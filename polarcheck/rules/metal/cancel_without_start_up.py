@@ -21,9 +21,9 @@ if TYPE_CHECKING:
     gouges=True,
     at=("compensation_off",),
     once="section",
-    subject="",
+    subject="offset",
     doubts=(("position", "section"), ("compensation", "section"), ("metal", "section")),
-    follows={"section": ("compensation-without-contour", "polar-switched-in-offset-mode")},
+    follows={"section": ("polar-switched-in-offset-mode",)},
     is_symptom=True,
 )
 def cancel_without_start_up(misplaced_ramps: MisplacedRamps) -> Mask:

@@ -22,7 +22,7 @@ _LEAST_BLOCKS = 2
     at=("compensation_left", "compensation_right"),
     once="section",
     subject="",
-    doubts=(("compensation", "section"), ("metal", "section"), ("size", "section")),
+    doubts=(("compensation", "section"), ("metal", "section"), ("size", "section"), ("offset", "section")),
 )
 def compensation_without_contour(misplaced_ramps: MisplacedRamps) -> Mask:
     """

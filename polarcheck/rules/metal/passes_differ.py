@@ -24,7 +24,7 @@ _APART = 1e-3
     subject="side",
     follows={
         "block": ("arc-sweep-above-limit",),
-        "twin": (*FAULTS_OF_CONTOUR, "contour-already-cut-into", "rapid-through-stock", "side-repeated-in-offset-mode"),
+        "twin": FAULTS_OF_CONTOUR,
         "motion": ("rapid-along-contour",),
     },
     is_symptom=True,

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     at=("compensation_left", "compensation_right"),
     once="section",
     subject="",
-    doubts=(("compensation", "section"), ("metal", "section")),
+    doubts=(("compensation", "section"), ("metal", "section"), ("offset", "section")),
 )
 def start_up_after_contour(path: ProgrammedPath, misplaced_ramps: MisplacedRamps) -> Mask:
     """

@@ -19,12 +19,9 @@ _SAME = 0.02
     ERROR,
     "arc along Z; in the polar mode arcs lie in the plane of {linear} and {virtual}{still_in_force}",
     at=("arc_clockwise", "arc_counterclockwise", "Z", "W"),
-    subject="",
+    subject="offset",
     doubts=NO_SUCH_ARC,
-    follows={
-        "arc before": ("arc-without-center",),
-        "section": ("polar-switched-in-offset-mode", "side-repeated-in-offset-mode"),
-    },
+    follows={"arc before": ("arc-without-center",), "section": ("polar-switched-in-offset-mode",)},
 )
 def arc_off_polar_plane(arcs: Arcs, compensation: CutterCompensation) -> Hits:
     """

@@ -20,14 +20,8 @@ if TYPE_CHECKING:
     at=("on", "off"),
     once="program",
     doubts=(("compensation", "section"), ("mode", "tool call"), ("rapid", "tool call")),
-    follows={
-        "section": (
-            "side-repeated-in-offset-mode",
-            "side-changed-in-offset-mode",
-            "block-skip-missing",
-            "start-up-after-contour",
-        ),
-    },
+    follows={"section": ("block-skip-missing",)},
+    subject="offset",
 )
 def polar_switched_in_offset_mode(mode: PolarMode, compensation: CutterCompensation) -> Mask:
     """
