@@ -40,7 +40,7 @@ CONTROLS = (
     Control("fanuc-30i", _FANUC_HEAD, "G12.1", "G13.1", _END),
     Control("doosan", _FANUC_HEAD, "G12.1", "G13.1", _END),
     Control("siemens-iso", _FANUC_HEAD, "G12.1", "G13.1", _END),
-    Control("mazak-eia", _FANUC_HEAD, "G12.1", "G13.1", _END),
+    Control("mazak-eia", (*_FANUC_HEAD, "M200"), "G12.1", "G13.1", _END),
     Control("fanuc", ("O1", "G20 G40 G97 G98", "T0101", "G28 H0", "M13 S3000"), "G12.1", "G13.1", _END, unit=25.4),
     Control(
         "haas-lathe",
@@ -55,7 +55,7 @@ CONTROLS = (
     Control("mitsubishi-m700", ("O1", "G21 G17 G90 G94 G40 G97", "T0101"), "G12.1", "G13.1", _END, diameter=False),
     Control(
         "okuma-osp",
-        ("O1", "G97 G40 G94", "M110", "T0101", "M13"),
+        ("O1", "G97 G40 G94", "M110", "T0101", "SB=1500 M13"),
         "G137 C0",
         "G136",
         ("M12", "M109", *_END),
