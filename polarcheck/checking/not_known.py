@@ -100,7 +100,7 @@ def is_argument(machine: Machine, variable: int) -> bool:
 def of_variables(trace: Trace) -> str:
     """The remedy where a value is not known."""
     if blocks := trace.run.blocks_run_once:
-        return f"line {int(trace.text.blocks.line[min(blocks)])} is run once here; {_RUN_WHOLE}"
+        return f"line {int(trace.text.blocks.line[min(blocks)])}, which is run once here, may give it; {_RUN_WHOLE}"
     return _OF_VARIABLES if trace.machine.macro.language == "custom-macro" else _OF_NAMED
 
 
