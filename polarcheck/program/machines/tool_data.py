@@ -17,7 +17,7 @@ from polarcheck.program.machines.offset_page import Entry, NotUnderstoodError
 IS_TOOL_DATA = re.compile(r"\$TC_DP\d{1,2}\s*+\[")
 #: A value that is set: its name, the tool, the edge, and what stands for it.
 _SETTING = re.compile(
-    r"\$TC_(?:DP(?P<edge_value>1|2|6|15)|(?P<name>TP2))\s*+\[\s*+(?P<tool>[^],;]*+)(?:,(?P<edge>[^];]*+))?\]\s*+=\s*+"
+    r"\$TC_(?:DP(?P<edge_value>1|2|6|15)|(?P<name>TP2))\s*+\[\s*+(?P<tool>[^],;]{0,99}+)(?:,(?P<edge>[^];]{0,99}+))?\]\s*+=\s*+"
     r'(?P<value>"[^"\n]*+"|[^\s;]++)'
 )
 _REMARK = re.compile(r';[^\n\r]*+|"[^"\n\r]*+"')

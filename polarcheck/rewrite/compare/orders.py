@@ -34,7 +34,7 @@ _OF_STATES = (
     *(key for group in ("plane", "side", "units", "feed_mode", "distance") for key in STATES[group]),
 )
 #: A statement by its name, with what is handed to it: `ADIS=0.5`, `ACC[X]=80`, `SOFT`.
-_STATEMENT = lazy_pattern(r"(?<![\w$])([A-Z]\w+)(?:\[[^\]]*\])?(?:\s*=\s*[^\s;]+|\([^)]*\))?")
+_STATEMENT = lazy_pattern(r"(?<![\w$])([A-Z]\w+)(?:\[[^\]]{0,99}+\])?(?:\s*+=\s*+[^\s;]++|\([^)]{0,99}+\))?")
 #: The number of a block.
 _NUMBER = re.compile(r"^\s*N\d+")
 #: Characters of a statement that is named.
