@@ -1038,6 +1038,13 @@ FOUND_TWICE = [
         [],
     ),
     (
+        "G97 with the rapid retract",
+        f"O1|T0101|G98|{HEXAGON}|M30".replace("/Z2./G13.1", "|G0 G97 S1000 Z2.|G13.1"),
+        "fanuc",
+        "code-not-allowed-in-polar",
+        [],
+    ),
+    (
         "T behind G42",
         f"O1|G98|{HEXAGON}|M30".replace("X30. F200", "X30. F200|T0101"),
         "fanuc",

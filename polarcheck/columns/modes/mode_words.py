@@ -58,6 +58,22 @@ class ModeWords(Columns, frozen=True):
         return trace.blocks.words_at(trace.blocks.g_words[forbidden]) & in_mode
 
     @cached_property
+    def only_outside(self) -> Mask:
+        """Not allowed in the mode, and of no rule that says more of its code."""
+        polar = self.trace.machine.polar
+        has_its_own_rule = (
+            self.listed("rapid")
+            | self.codes(*polar.on, *polar.off)
+            | self.selects_plane
+            | self.sets_length_offset
+            | self.shifts_origin
+            | self.changes_tool_offset
+            | self.ends_drilling
+            | self.unknown
+        )
+        return self.not_allowed & ~has_its_own_rule
+
+    @cached_property
     def ends_drilling(self) -> Mask:
         """G80 of a drilling cycle that is in force: it was that which cannot stand in the mode."""
         trace = self.trace

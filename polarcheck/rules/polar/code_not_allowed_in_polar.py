@@ -6,7 +6,6 @@ from polarcheck.rules.rule import ERROR, Hits, graded, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.modes.mode_words import ModeWords
-    from polarcheck.program.machines.machine import Machine
     from polarcheck.rules.hit import Details, Hit
 
 
@@ -16,7 +15,7 @@ if TYPE_CHECKING:
     values=("code",),
     subject="word",
 )
-def code_not_allowed_in_polar(mode_words: ModeWords, machine: Machine) -> Hits:
+def code_not_allowed_in_polar(mode_words: ModeWords) -> Hits:
     """
     Code that cannot be used in the polar mode.
 
@@ -72,17 +71,7 @@ def code_not_allowed_in_polar(mode_words: ModeWords, machine: Machine) -> Hits:
         C180.
         G80
     """
-    has_its_own_rule = (
-        mode_words.listed("rapid")
-        | mode_words.codes(*machine.polar.on, *machine.polar.off)
-        | mode_words.selects_plane
-        | mode_words.sets_length_offset
-        | mode_words.shifts_origin
-        | mode_words.changes_tool_offset
-        | mode_words.ends_drilling
-        | mode_words.unknown
-    )
-    other = mode_words.not_allowed & ~has_its_own_rule
+    other = mode_words.only_outside
     limits_speed = other & mode_words.sets_coordinates
     return graded(error=mode_words.rows(other & ~limits_speed), warning=mode_words.rows(limits_speed), at=other)
 

@@ -9,6 +9,7 @@ if TYPE_CHECKING:
     from polarcheck.columns.modes.executed_blocks import ExecutedBlocks
     from polarcheck.columns.modes.modal import ModalStates
     from polarcheck.columns.modes.mode import PolarMode
+    from polarcheck.columns.modes.mode_words import ModeWords
     from polarcheck.columns.path.axes import PlaneAxes
     from polarcheck.columns.path.compensation import CutterCompensation
     from polarcheck.columns.words.angles import Angles
@@ -19,11 +20,11 @@ if TYPE_CHECKING:
     ERROR,
     "G0 cannot be used in the polar mode; {instead_of_rapid}",
     at=("rapid",),
-    follows={"block": ("code-not-allowed-in-polar",), "section": ("degrees-in-polar",)},
+    follows={"section": ("degrees-in-polar",)},
     doubts=(("rapid", "motion"),),
 )
 def rapid_in_polar(
-    blocks: ExecutedBlocks, modal: ModalStates, axes: PlaneAxes, mode: PolarMode, angles: Angles
+    blocks: ExecutedBlocks, modal: ModalStates, axes: PlaneAxes, mode: PolarMode, angles: Angles, mode_words: ModeWords
 ) -> Hits:
     """
     Rapid traverse in the polar mode.
@@ -62,6 +63,7 @@ def rapid_in_polar(
     """
     # What G0 means beside a code that can only stand outside is no question of its own.
     outside = blocks.listed("reference_check", "reference_return", "machine_coordinates")
+    outside = outside | mode_words.rows(mode_words.only_outside & ~mode_words.sets_coordinates)
     in_rapid = mode.in_polar & (modal.state("motion") == Motion.RAPID) & ~outside
     written = blocks.listed("rapid")
     first_move = mode.first_in_section(in_rapid & (axes.motion == Motion.RAPID)) & ~mode.given_in_section(written)
