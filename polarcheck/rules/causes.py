@@ -51,6 +51,7 @@ SUBJECTS: Final = {
     "infeed": ("section", ("position", "arc", "compensation", "metal")),
     "stock": ("section", ("size", "position", "arc", "compensation", "metal")),
     "rapid": ("block", ("size", "rapid")),
+    "plunge": ("block", ("size", "rapid")),
     "reach": ("section", ("size", "position", "arc")),
     "size": ("program", ("size", "word")),
     "word": ("block", ("word",)),

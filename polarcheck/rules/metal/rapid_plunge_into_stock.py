@@ -17,7 +17,8 @@ if TYPE_CHECKING:
     worse=("-z",),
     gouges=True,
     once="tool call",
-    subject="rapid",
+    subject="plunge",
+    doubts=(("rapid", "tool call"),),
 )
 def rapid_plunge_into_stock(workpiece: Workpiece) -> Hits:
     """

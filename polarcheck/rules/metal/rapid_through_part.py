@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     gouges=True,
     once="tool call",
     subject="rapid",
-    follows={"block": ("rapid-plunge-into-stock",), "tool call": ("cut-in-air",)},
+    follows={"tool call": ("cut-in-air",)},
     is_symptom=True,
 )
 def rapid_through_part(workpiece: Workpiece) -> Hits:

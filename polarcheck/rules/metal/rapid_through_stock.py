@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     gouges=True,
     once="tool call",
     subject="rapid",
-    follows={"block": ("rapid-through-part",), "tool call": ("rapid-plunge-into-stock",)},
+    follows={"block": ("rapid-through-part",)},
 )
 def rapid_through_stock(workpiece: Workpiece) -> Hits:
     """
