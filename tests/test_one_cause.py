@@ -29,7 +29,7 @@ BETWEEN = ["G0 Z20."]
 #: Sound sections for R 4 mm, without their head; `/` separates blocks.
 SQUARE = "G0 X80. Z2. C0/G12.1/G1 Z-5. F300/G42 X40. F200/C20./X-40./C-20./X40./C0/G40 X80./Z2./G13.1"
 #: A round pocket beside the center.
-POCKET = (
+ROUND_POCKET = (
     "G41 X32. F200/G3 X40. C0 I0 J4./X24. C8. I-8. J0/X8. C0 I0 J-8./X24. C-8. I8. J0/X40. C0 I0 J8./X32. C4. I-4. J0/"
     "G40 G1 X22. F1000"
 )
@@ -116,6 +116,7 @@ MISTAKES = [
     Mistake("two points", SQUARE, {"X-40.": "X-40.."}, "X-40..", "bad-number", inch=False),
     Mistake("two signs", SQUARE, {"X-40.": "X--40."}, "X--40.", "bad-number", inch=False),
     Mistake("l for 1", SQUARE, {"X40. F": "X4l. F"}, "G42 X4l. F200", "bad-number", inch=False),
+    Mistake("l for 1 at the end", SQUARE, {"X40./C0": "X4l./C0"}, "X4l.", "bad-number", inch=False),
     Mistake("O for 0", SQUARE, {"X40. F": "X4O. F"}, "G42 X4O. F200", "letter-for-digit", inch=False),
     Mistake("GO for G0", SQUARE, {"G0 X80.": "GO X80."}, "GO X80. Z2. C0", "letter-for-digit"),
     Mistake("dash of print", SQUARE, {"X-40.": "X\u201340."}, "X\u201340.", "wrong-dash", inch=False),
@@ -469,7 +470,8 @@ WHOLE = [
     (
         "G41 forgotten in the first of two passes",
         HEAD,
-        f"G0 X32. Z2. C0/G12.1/G1 X22. C-4. F1000/Z-2. F80/{POCKET.partition(' ')[2]}/C-4./Z-4. F80/{POCKET}/Z2./G13.1",
+        f"G0 X32. Z2. C0/G12.1/G1 X22. C-4. F1000/Z-2. F80/{ROUND_POCKET.partition(' ')[2]}/C-4./Z-4. F80/"
+        f"{ROUND_POCKET}/Z2./G13.1",
         END,
         "G40 G1 X22. F1000",
         "cancel-without-start-up",

@@ -21,7 +21,10 @@ if TYPE_CHECKING:
     gouges=True,
     at=("compensation_off",),
     doubts=(("metal", "block"), ("rapid", "tool call")),
-    follows={"loop": ("inside-arc-smaller-than-radius", "start-up-shorter-than-radius")},
+    follows={
+        "loop": ("inside-arc-smaller-than-radius", "start-up-shorter-than-radius"),
+        "section": ("incremental-word-of-other-code-system",),
+    },
     is_symptom=True,
 )
 def cancel_shorter_than_radius(
@@ -89,7 +92,7 @@ def cancel_shorter_than_radius(
     # With R 0 an offset cancel needs no length; an R that is not known is not 0.
     missing = ramps.cancel_missing & (compensation.radius != 0)
     # R is too large for both ramps, or for an arc between them.
-    follows = {"loop": short | ramps.suffices_for_smaller_cutter}
+    follows = {"loop": short | ramps.suffices_for_smaller_cutter, "section": missing}
     if machine.compensation.leaving_cancels:
         return graded(error=short, note=missing, follows=follows)
     return graded(error=short | missing, follows=follows)

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     follows={
         "loop": ("arc-end-off-circle", "arc-radius-too-small", "arc-center-on-path", "start-up-off-contour"),
         "section": ("rapid-in-polar", "contour-open-with-infeed"),
-        "block": ("vacant-variable",),
+        "block": ("vacant-variable", "arc-without-center"),
     },
     doubts=(("position", "loop"),),
     is_symptom=True,

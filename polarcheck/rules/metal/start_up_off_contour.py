@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     is_symptom=True,
     once="loop",
     subject="",
+    follows={"loop": ("bad-number",)},
     doubts=(("position", "X"), ("position", "X before"), ("compensation", "loop"), ("metal", "loop")),
 )
 def start_up_off_contour(misplaced_ramps: MisplacedRamps) -> Mask:

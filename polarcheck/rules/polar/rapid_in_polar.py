@@ -66,7 +66,8 @@ def rapid_in_polar(
     outside = outside | mode_words.rows(mode_words.only_outside & ~mode_words.sets_coordinates)
     in_rapid = mode.in_polar & (modal.state("motion") == Motion.RAPID) & ~outside
     written = blocks.listed("rapid")
-    first_move = mode.first_in_section(in_rapid & (axes.motion == Motion.RAPID)) & ~mode.given_in_section(written)
+    moves = in_rapid & (axes.motion == Motion.RAPID) & ~mode.enters_again
+    first_move = mode.first_in_section(moves) & ~mode.given_in_section(written)
     # G0 with an angle of C is the positioning of an approach that stands behind G12.1 in place of before it.
     return Hits(in_rapid & (written | first_move), follows={"section": angles.is_positioning})
 

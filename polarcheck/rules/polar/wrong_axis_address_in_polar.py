@@ -51,7 +51,9 @@ def wrong_axis_address_in_polar(mode: PolarMode, mode_words: ModeWords) -> Hits:
         G13.1
         G28 V0
     """
-    return Hits(mode.in_polar & mode_words.rows(mode_words.of_other_axis), at=mode_words.of_other_axis)
+    # Beside a switch it may be another word, as in G137 C0.
+    within = mode.in_polar & ~mode.enters_again
+    return Hits(within & mode_words.rows(mode_words.of_other_axis), at=mode_words.of_other_axis)
 
 
 def details(hit: Hit, modal: ModalStates, job: Job, other_machine: OtherMachine) -> Details:
