@@ -372,7 +372,8 @@ class _Search:
             rules = {rule for rule, _ in gone}
             if more and (not likely.is_clear or rules.isdisjoint(_NO_ARC) or not rules.isdisjoint(more)):
                 return None
-        if not gone:
+        # A number that leaves nothing to move gives an arc no center.
+        if not gone or (likely.edit.kind == "word" and any(rule == _NO_CENTER for rule, _ in gone)):
             return None
         return _Explained(likely, row, edits, gone, left)
 
