@@ -172,6 +172,19 @@ def _of_arcs(trace: Trace, loop: WrittenLoop, address: str) -> Iterator[Edit]:
                 if (value or axis) and abs(value) <= max(longest[block + 1], abs(had)):
                     text, factor = letters + slip.text, value / had
                     yield Edit("arc", block + 1, (word,), text, slip.kind, cost, axis, factor)
+            if axis and (value := _to_both_ends(loop, ends, block, axis, had)) and abs(value - had) > _SAME_NUMBER:
+                text = letters + plain_number(value)
+                yield Edit("arc", block + 1, (word,), text, "another number is meant", _SELDOM, axis, value / had)
+
+
+def _to_both_ends(loop: WrittenLoop, ends: Points, block: int, axis: int, had: float) -> float:
+    """I or J, as round as it is written, with which the center of an arc is as far from both its ends; 0 for none."""
+    chord, center = complex(ends[block + 1] - ends[block]), complex(loop.to_center[block])
+    along, other = (chord.real, chord.imag * center.imag) if axis == 1 else (chord.imag, chord.real * center.real)
+    own = center.real if axis == 1 else center.imag
+    meant = (abs(chord) ** 2 / 2 - other) / along if abs(along) > loop.tolerance else 0.0
+    value = round(meant / own * had, _decimals(plain_number(had))) if own else 0.0
+    return value if own and abs(value / had * own - meant) <= loop.tolerance else 0.0
 
 
 def _of_codes(trace: Trace, loop: WrittenLoop) -> Iterator[Edit]:
