@@ -401,6 +401,27 @@ def test_a_plane_that_ends_the_mode_is_a_plane_outside_of_it(plane: str, target:
     assert lines[lines.index("G0 Z50.") - 1] == plane
 
 
+@looped("source", ["doosan", "takisawa"])
+@looped(
+    ("head", "plane", "is_written"),
+    [("", "G18", True), (" G18", "G18", True), (" G17", "G17", True), ("", "G17", False)],
+)
+def test_a_plane_in_the_mode_is_left_out_where_it_is_in_force_and_an_alarm(
+    source: str, head: str, plane: str, is_written: bool
+) -> None:
+    """Posts for these lathes write G18 behind G12.1; a 30i stops with PS0146 there. Another plane stays refused."""
+    program = f"O1\nG21 G98 G40{head}\nG0 X60. Z2. C0\nG12.1\n{plane}\nG1 X40. F200\nC5.\n{plane} X60. C0\nG13.1\nM30\n"
+    if not is_written:
+        assert "plane-selected-in-polar in line 5" in str(refused(program, source, "fanuc-30i"))
+        return
+    outcome = convert(program, source, "fanuc-30i")
+    assert "G12.1\nG1 X40. F200\nC5.\nX60. C0\nG13.1\n" in outcome.data.decode()
+    why = f"{plane} is left out: a section stays in the plane of the mode"
+    assert [f"line {line}: {why}" for line in (5, 8)] == [note for note in outcome.notes if why in note]
+    kept = convert(program, source, "takisawa" if source == "doosan" else "doosan").data.decode()
+    assert f"G12.1\n{plane}\nG1 X40. F200\nC5.\n{plane} X60. C0\n" in kept
+
+
 @pytest.mark.ci
 def test_f_is_that_of_the_way_that_the_control_measures() -> None:
     """Haas measures X, Y and Z: sqrt(3^2 + 4^2) of 4 on the plane, so that 200 there is 250 along the way."""

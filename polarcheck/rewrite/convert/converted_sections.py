@@ -28,6 +28,9 @@ from polarcheck.rules.editing import is_plain
 
 #: Numbers of a column, since a name of states is looked up anew for each row.
 _RAPID, _CCW = int(Motion.RAPID), int(Motion.CCW)
+_PLANE_IN_MODE = "plane-selected-in-polar"
+#: Lathes begin in X and Z.
+_OF_TURNING = 18
 
 
 def write_sections(
@@ -102,8 +105,7 @@ class _Writer:
         planes = self.trace.modal.state("plane")[enter:leave]
         for row in np.flatnonzero((np.diff(planes) != 0) & (planes[1:] != planes[0])).tolist():
             if (code := f"G{int(planes[row + 1])}") not in self.trace.machine.writing.behind:
-                line = self.lines[enter + row + 1]
-                self.new.notes.append(f"line {line}: {code} is left out: a section stays in the plane of the mode")
+                self._note_plane(enter + row + 1, code)
         for row in ends.without(enter, leave, pen):
             self._put(row, [])
         targets = self._targets(rows)
@@ -246,10 +248,26 @@ class _Writer:
             return [NewBlock((), comment)]
         words: list[str] = []
         for index in indices:
+            if index in geometry and self._is_lost_plane(row, index):
+                self._note_plane(row, written(index))
+                continue
             words += parts[index].words if index in parts else [] if index in remaining else [written(index)]
         if not comment and words == [written(index) for index in indices]:
             return None
-        return [NewBlock(tuple(words), comment)]
+        return _without_empty(NewBlock(tuple(words), comment))
+
+    def _is_lost_plane(self, row: int, index: int) -> bool:
+        """A word selects the plane that is in force in the mode, where that is an error on the other machine alone."""
+        machines = self.trace.machine, self.target
+        ours, theirs = (machine.severities.get(_PLANE_IN_MODE, "error") != "error" for machine in machines)
+        if not ours or theirs or self.words.key(index) not in STATES["plane"] or not self.trace.mode.in_polar[row]:
+            return False
+        planes = self.trace.modal.state("plane")
+        return (int(planes[row - 1]) or _OF_TURNING) == int(planes[row])
+
+    def _note_plane(self, row: int, code: str) -> None:
+        note = f"line {self.lines[row]}: {code} is left out: a section stays in the plane of the mode"
+        self.new.notes += [note] if note not in self.new.notes else []
 
     # ---- blocks ----
 
