@@ -63,7 +63,7 @@ def programs_of(seed: int, machine: str = "") -> tuple[str, list[str], str, list
 
 
 @pytest.mark.ci
-@looped(("seed", "machine"), [(1150, "mitsubishi-m700"), (1270, "colchester")])
+@looped(("seed", "machine"), [(1150, "mitsubishi-m700"), (1270, "colchester"), (535, ""), (746, "")])
 def test_what_an_unknown_section_would_make_is_no_fault_elsewhere(seed: int, machine: str) -> None:
     machine, tools, _, changed = programs_of(seed, machine)
     for text, _ in changed:

@@ -23,7 +23,8 @@ class Passes(Columns, frozen=True):
     The passes of one trace, and their moves, n of them in the order of the program.
 
     A pass lasts from a start-up to the offset cancel, or without compensation from one rapid move, start-up or cancel
-    to the next; a Z move of its own ends it. Start-ups and cancels belong to no pass.
+    to the next; a Z move of its own ends it, and so does a move that is not known. Start-ups and cancels belong to no
+    pass.
     """
 
     trace: Trace
@@ -33,9 +34,13 @@ class Passes(Columns, frozen=True):
         """The row of each move."""
         trace = self.trace
         chosen = trace.path.on_plane & ~trace.compensation.starts_up & ~trace.compensation.cancels
-        chosen &= trace.axes.motion != Motion.RAPID
-        rows = np.flatnonzero(chosen)
-        return rows[~np.isnan(trace.path.start[rows] + trace.path.end[rows])]
+        return np.flatnonzero(chosen & (trace.axes.motion != Motion.RAPID) & ~self._is_open)
+
+    @cached_property
+    def _is_open(self) -> Mask:
+        """Rows of the trace with a move on the plane of which it is not known where or how it goes."""
+        path = self.trace.path
+        return np.asarray(path.on_plane & (np.isnan(path.start + path.end) | path.shape_is_unknown))
 
     @cached_property
     def moves_z_alone(self) -> Mask:
@@ -50,6 +55,7 @@ class Passes(Columns, frozen=True):
         trace, row = self.trace, self.row
         breaks = trace.compensation.starts_up | trace.compensation.cancels | trace.mode.enters | self.moves_z_alone
         breaks |= (trace.axes.motion == Motion.RAPID) | (trace.compensation.side != trace.compensation.side_before)
+        breaks |= self._is_open
         return first_in_run(np.cumsum(breaks)[row]).cumsum() - 1
 
     @cached_property

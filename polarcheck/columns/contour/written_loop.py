@@ -82,22 +82,26 @@ class WrittenLoop(NamedTuple):
 
 
 def written_loops(trace: Trace, sections: Sequence[int]) -> Iterator[WrittenLoop]:
-    """The paths of these sections, each block of the file once, in the order of the program."""
+    """
+    The paths of these sections, each block of the file once, in the order of the program.
+
+    One with a block of which it is not known where or how it goes is none: those beside it would follow each other.
+    """
     at_feed, compensation = trace.axes.at_feed, trace.compensation
     ramp = compensation.starts_up | compensation.cancels
     travels = trace.path.travels
     lifts = trace.path.moves_z & ~travels & ~compensation.compensates
     begins = ramp | trace.mode.enters | lifts | (travels & ~at_feed)
     has_word = trace.blocks.mask_of(trace.run.row[trace.axes.virtual_words]) | trace.blocks.has(*"XU")
-    is_known = ~np.isnan(trace.path.end + trace.path.start)
+    is_known = ~(np.isnan(trace.path.end + trace.path.start) | trace.path.shape_is_unknown)
     is_inside = np.isin(trace.mode.section, sections) & trace.mode.in_polar
-    rows = np.flatnonzero(is_inside & at_feed & ~ramp & (travels | has_word) & is_known)
+    rows = np.flatnonzero(is_inside & at_feed & ~ramp & (travels | has_word))
     stretch = np.cumsum(begins)[rows]
     blocks: set[bytes] = set()
     for first in np.flatnonzero(np.diff(stretch, prepend=-1)).tolist():
         own = rows[first : first + int(np.searchsorted(stretch[first:], stretch[first], "right"))]
         key = trace.run.block[own].tobytes()
-        if _FEWEST <= len(own) <= _MOST and key not in blocks:
+        if _FEWEST <= len(own) <= _MOST and key not in blocks and is_known[own].all():
             blocks.add(key)
             before = np.flatnonzero(travels[: own[0]])
             yield written_loop(trace, np.append(before[-1] if len(before) else -1, own))
