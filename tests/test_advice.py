@@ -194,7 +194,8 @@ def test_a_ramp_that_is_too_short_names_the_offset_of_another_tool(tool: str, li
 def test_a_ramp_that_would_be_long_enough_in_inch() -> None:
     program = SOUND.replace("X60.", "X2.").replace("X40.", "X1.5").replace("X-40.", "X-1.5").replace("20.", ".75")
     found = messages(program, tool="1:radius=3.175")["start-up-shorter-than-radius"]
-    assert found.endswith("; neither G20 nor G21 stands above it: in inch it would be long enough")
+    told = "; neither G20 nor G21 stands above it: in inch it would be long enough; it begins at X2 C0 of line 5"
+    assert found.endswith(told)
     found = messages(program.replace("O1 / ", "O1 / G21 / "), tool="1:radius=3.175")["start-up-shorter-than-radius"]
     assert "G20" not in found
 

@@ -173,11 +173,16 @@ def test_one_large_number_without_a_point_is_a_slip(base: str, units: str, place
     without = dict.fromkeys(("before", "inside", "behind"), "M8\n") | {"units": units}
     clean, slip = frame.format(base.format(**without)), frame.format(base.format(**without | {place: "Z1000\n"}))
     assert places(slip) == places(clean)
-    told = {(found.line, found.severity, found.message) for found in report(slip).findings}
-    told -= {(found.line, found.severity, found.message) for found in report(clean).findings}
+    told, before = ({(one.line, one.severity, one.message) for one in report(text).findings} for text in (slip, clean))
+    if base == WHOLE:
+        # All numbers but F lack their points, which is one finding at the first of the section: it counts one more.
+        [(line, severity, message)] = before - told
+        assert "; 4 more numbers have none" in message
+        assert told - before == {(line, severity, message.replace("; 4 more", "; 5 more"))}
+        return
     takes = f"the control takes it as {'0.1 inch' if units else '1 mm'}"
     line = slip.split("\n").index("Z1000") + 1
-    assert told == {(line, "warning", f"Z1000 has no decimal point: {takes}")}
+    assert told - before == {(line, "warning", f"Z1000 has no decimal point: {takes}")}
 
 
 def test_a_word_in_a_loop_is_reported_once() -> None:
