@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     "this section cuts without G41 or G42, so that R of the tool offset cannot set the size of the part",
     over="sections",
     at=("on",),
+    follows={"section": ("polar-switched-in-offset-mode",)},
     is_advice=True,
 )
 def no_compensation_in_polar(mode: PolarMode, path: ProgrammedPath, compensation: CutterCompensation) -> Mask:
