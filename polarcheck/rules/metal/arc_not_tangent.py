@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 from polarcheck.foundation.states import Units
@@ -10,6 +11,9 @@ if TYPE_CHECKING:
     from polarcheck.columns.path.arcs import Arcs
     from polarcheck.foundation.arrays import Mask
     from polarcheck.rules.hit import Details, Hit
+
+#: Numbers that differ by less are one [mm].
+_SAME_NUMBER = 1e-6
 
 
 @rule(
@@ -124,7 +128,7 @@ def details(hit: Hit, arcs: Arcs, tangency: Tangency) -> Details:
         "arc_radius": arcs.radius[hit.row] if by_radius else None,
         "arc_radius_needed": abs(tangency.radius_needed[hit.row]) if by_radius else None,
         "word": written_arc(hit.trace, arcs, hit.row),
-        "word_needed": _needed(hit, by_radius, tangency),
+        "word_needed": _needed(hit, by_radius, arcs, tangency),
         "fit": _fit(hit.row, tangency),
         "likewise": hit.likewise(tangency.alike(hit.row)) if by_radius else "",
     }
@@ -139,7 +143,7 @@ def _fit(row: int, tangency: Tangency) -> str:
     return "be tangent to the blocks before and after it"
 
 
-def _needed(hit: Hit, by_radius: bool, tangency: Tangency) -> str:
+def _needed(hit: Hit, by_radius: bool, arcs: Arcs, tangency: Tangency) -> str:
     """The words with which the arc would be tangent to the blocks before and after it."""
     from polarcheck.rules.wording.arcs import radius_word
 
@@ -147,7 +151,12 @@ def _needed(hit: Hit, by_radius: bool, tangency: Tangency) -> str:
     inch = bool(trace.lengths.units[row] == Units.INCH)
     scale, near = float(trace.lengths.scale[row]), float(tangency.radius_tolerance[row])
     if by_radius:
-        return radius_word(trace.machine) + _plain(float(tangency.radius_needed[row]) / scale, near / scale, inch)
+        needed = float(tangency.radius_needed[row])
+        # The R of another arc is meant, with all its digits.
+        others = arcs.radius[arcs.by_radius & (abs(abs(arcs.radius) - abs(needed)) <= near)]
+        if len(others):
+            needed, near = math.copysign(float(others[0]), needed), _SAME_NUMBER
+        return radius_word(trace.machine) + _plain(needed / scale, near / scale, inch)
     to_center = complex(tangency.center_needed[row] - trace.path.start[row])
     if trace.path.frames is not None:
         to_center /= complex(trace.path.frames.turn[row])
