@@ -92,6 +92,8 @@ def beside_depth(code: str) -> dict[str, str]:
 
 MIRRORED = "side-of-compensation-mirrored"
 MOVEMENT = ("movement-missing-in-offset-mode",)
+#: Behind a turning cycle no X is a move of the contour.
+WAY_OUT = ("cancel-shorter-than-radius",)
 MISTAKES = [
     # ---- F, of which one word governs many blocks ----
     Mistake("F too high", HEXAGON, {"F200": "F2000"}, "C8.660", "c-feed-above-limit", changes=LIMIT),
@@ -361,7 +363,16 @@ MISTAKES = [
     ),
     # ---- codes that stand in the wrong place ----
     *(
-        Mistake(f"{code} beside the depth", SQUARE, beside_depth(code), code, rule, MOVEMENT, inch=False, others=others)
+        Mistake(
+            f"{code} beside the depth",
+            SQUARE,
+            beside_depth(code),
+            code,
+            rule,
+            WAY_OUT if code in ("G90", "G94") else MOVEMENT,
+            inch=False,
+            others=others,
+        )
         for code, rule, others in (
             ("G17", "plane-selected-in-polar", ("fanuc-16i", "gsk-988")),
             ("G54", "origin-shifted-in-polar", OTHERS),

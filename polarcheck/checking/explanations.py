@@ -67,7 +67,9 @@ _AROUND = 4
 #: does not speak for it.
 _RULES_OF_CODE, _BLOCKS_OF_CODE = 2, 4
 #: Rules that a smaller cutter satisfies: only what is clear beside them explains them by another word.
-_OF_CUTTER = "overcut", "slot-narrower-than-cutter", "inside-arc-smaller-than-radius"
+_OF_CUTTER = {"overcut", "slot-narrower-than-cutter", "inside-arc-smaller-than-radius", "interference"}
+#: The rule of the ramps of a contour that is too narrow.
+_OF_RAMPS = "start-up-sweeps-contour"
 #: Rules of rates: no code that stands elsewhere explains them.
 _OF_RATES = "c-feed-above-limit", "c-acceleration-above-limit", "x-acceleration-above-limit"
 #: The rule that speaks of a word or a code that is missing, and of no number.
@@ -244,7 +246,7 @@ class _Search:
             row = loop.row_of(self.trace.run, likely.edit.corner, likely.edit.words)
             edits = [] if self._contradicts(row, likely, own) else self._edits(loop, likely)
             found = self._tried(likely, row, edits, others) if edits else None
-            if found is not None and not likely.is_clear and all(rule in _OF_CUTTER for rule, _ in found.gone):
+            if found is not None and not likely.is_clear and _is_of_cutter({rule for rule, _ in found.gone}):
                 continue
             if found is not None and own.isdisjoint(line for _, line in found.left):
                 whole.append(found)
@@ -478,6 +480,10 @@ def _may_lead(engine: Engine, finding: Finding, explanation: _Explained) -> bool
     needed = str(finding.values.get("word_needed", ""))
     names_none = not needed and finding.rule != REPORTS
     return names_none or _numbers(needed) == _numbers(explanation.likely.edit.text)
+
+
+def _is_of_cutter(rules: set[str]) -> bool:
+    return not rules.isdisjoint(_OF_CUTTER) and rules <= _OF_CUTTER | {_OF_RAMPS}
 
 
 def _numbers(words: str) -> list[tuple[str, float]]:

@@ -105,6 +105,7 @@ FAULTS_OF_CONTOUR: Final = (
     "arc-sense-reversed",
     "arc-not-tangent",
     "arc-word-without-arc",
+    "bad-number",
     "contour-crosses-itself",
     "contour-at-two-depths",
     "contour-not-closed",
