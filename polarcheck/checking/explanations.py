@@ -285,18 +285,21 @@ class _Search:
         """
         The block of an edit differs from that of another pass, and with the edit it would have another number.
 
-        What is not clear is no reason either to edit a block that the other pass has, too. own: the lines of the path.
+        What is not clear edits no block either that the other pass has, too, but for the number of that. own: the lines
+        of the path.
         """
         blocks, edit, numbers = self.trace.blocks, likely.edit, _numbers(likely.edit.text)
-        line = int(blocks.line[row])
+        line, differing = int(blocks.line[row]), own & self.compared.keys()
         other = self.compared.get(line)
-        if other is None and not likely.is_clear and not own.isdisjoint(self.compared):
-            return True
+        is_as_there = other is None and not likely.is_clear and bool(differing)
+        if is_as_there:
+            near = min(differing, key=lambda one: abs(one - line))
+            other = self.compared[near] + line - near
         if edit.kind != "word" or other is None or len(numbers) != 1:
-            return False
+            return is_as_there
         ((letter, number),) = numbers
         value = blocks.word(letter.strip("="))[np.argmax(blocks.line == other)]
-        return bool(abs(value - number) > ROUNDING)
+        return bool(abs(value - number) > ROUNDING or (is_as_there and np.isnan(value)))
 
     def _pair(self, compared: Compared, own: set[int], others: set[int]) -> list[_Explained]:
         """

@@ -272,8 +272,8 @@ class _Search:
         arcs, by_center = outline.turns[0] != 0, np.isnan(outline.radius[0])
         if likely.gain < _GAIN_ALONE or likely.edit.kind != "word" or (arcs & by_center).any() or not arcs.any():
             return False
-        shift = (outline.point - self._compared.outlines.point)[0, 1:][arcs]
-        if (np.abs(shift - shift[0]) <= self.tolerance).all():
+        shift = (outline.point - self._compared.outlines.point)[0]
+        if (np.abs(np.append(shift[:-1][arcs], shift[1:][arcs]) - shift[1:][arcs][0]) <= self.tolerance).all():
             return False
         now, then = (are_about_axis(one, self.tolerance)[0, arcs] for one in (self._compared.outlines, outline))
         return bool(len(then) >= _FEWEST_ARCS and then.all() and not now.all())

@@ -30,7 +30,7 @@ _OF_LOST_CORNER = 2.0
 #: How much less likely an edit of the block before the path is, since it leads to it; not where that closes the path
 #: [coordinates].
 _OF_LEAD = 2.0
-#: The same where the path begins with an arc, which says where it begins.
+#: The same where the path begins with an arc or would be closed, which says where it begins.
 _OF_KNOWN_START = 0.5
 #: Edits that are looked at for two mistakes, and second edits of each; kinds of edits that are none of two.
 _FIRST_EDITS, _SECOND_EDITS, _OF_BLOCKS = 8, 2, ("twice", "order")
@@ -105,9 +105,9 @@ def _compared(loop: WrittenLoop, edits: Iterable[Edit]) -> Compared:
     chances = chances_of(outlines, loop.tolerance)
     is_start = np.array([False, *(not edit.corner for edit in edits)])
     # Where the path would be closed, its start and its end are one point, and either may be wrong.
-    is_start &= chances.is_open >= chances.is_open[0]
+    is_known = (chances.is_open < chances.is_open[0]) | bool(loop.turns[0])
     total = chances.total + np.array([0.0, *(edit.cost for edit in edits)])
-    total += is_start * (_OF_KNOWN_START if loop.turns[0] else _OF_LEAD)
+    total += is_start * np.where(is_known, _OF_KNOWN_START, _OF_LEAD)
     # A shape that loses corners is another shape.
     lost = np.maximum(chances.corners[0] - chances.corners - 1, 0)
     return Compared(loop, edits, outlines, chances, total[0] - total - _OF_LOST_CORNER * lost)
