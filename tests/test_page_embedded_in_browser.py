@@ -70,7 +70,8 @@ def test_the_page_follows_the_cursor_and_leads_to_blocks(browser: Any, tmp_path:
     opened.evaluate("window.sent = []")
     opened.locator("[data-finding]:visible").first.click()
     assert opened.evaluate("window.sent") == [{"kind": "line", "line": 2}]
-    # What is shown is kept as the page is drawn anew.
+    # What is shown is kept as the page is drawn anew, once its face has settled.
+    opened.wait_for_function("() => new Promise((done) => setTimeout(() => done(true), 1000))")
     opened.get_by_role("button", name="Machine").first.click()
     send({"kind": "keep"})
     (kept,) = opened.evaluate("window.sent")
